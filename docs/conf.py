@@ -52,7 +52,7 @@ TOUCHED = {
     "forces": "silicon_on_gold",
     "geometry": "polyester",
     "interaction": "mica_in_air",
-    "yielding": "cell_in_liquid",
+    "deformation": "cell_in_liquid",
 }
 html_extra_path = [str(TOUCH)] if TOUCH.exists() else []
 suppress_warnings = ["ref.python"]  # fields of many records have the same name, such as x

@@ -110,19 +110,19 @@ set(nanotouch_sources_scene
     scene/terms/vdw.c
     scene/terms/yukawa.c
     scene/warnings.c
-    scene/yielding/adhere.c
-    scene/yielding/contact.c
-    scene/yielding/follow.c
-    scene/yielding/law.c
-    scene/yielding/layer.c
-    scene/yielding/mesh.c
-    scene/yielding/peak.c
-    scene/yielding/radii.c
-    scene/yielding/relief.c
-    scene/yielding/solve.c
-    scene/yielding/table.c
-    scene/yielding/terms.c
-    scene/yielding/yielding.c)
+    scene/deformation/adhere.c
+    scene/deformation/contact.c
+    scene/deformation/follow.c
+    scene/deformation/law.c
+    scene/deformation/layer.c
+    scene/deformation/mesh.c
+    scene/deformation/peak.c
+    scene/deformation/radii.c
+    scene/deformation/relief.c
+    scene/deformation/solve.c
+    scene/deformation/table.c
+    scene/deformation/terms.c
+    scene/deformation/deform.c)
 set(nanotouch_sources_scan scan/answer.c scan/balance.c scan/branches.c scan/curve.c scan/drive.c scan/flow.c scan/loop.c scan/orbit.c scan/overshoot.c scan/scanner.c scan/settle.c scan/steady.c scan/tapping.c scan/zloop.c)
 set(nanotouch_sources_view view/curve.c view/section.c)
 set(nanotouch_sources_curves

@@ -222,7 +222,7 @@ Sample mean_of(const std::vector<Sample> &sample, std::size_t first)
     return mean;
 }
 
-// Place in the grid of the E* at which the contact yields as it does between half of the points and the deepest; -1
+// Place in the grid of the E* at which the contact deforms as it does between half of the points and the deepest; -1
 // where they do not tell. At given forces, indentations go as E*^(-1/exponent).
 int likely_place(const nt_fit_options &options, const std::vector<Sample> &sample, const Grid &grid)
 {
@@ -240,10 +240,10 @@ int likely_place(const nt_fit_options &options, const std::vector<Sample> &sampl
         model->travel(force(half), &travel[1]) != NT_OK)
         return -1;
     const double bent = options.spring_constant > 0.0 ? (force(deep) - force(half)) / options.spring_constant : 0.0;
-    const double yielded = deep.position - half.position - bent, tried = travel[0] - travel[1] - bent;
+    const double deformed = deep.position - half.position - bent, tried = travel[0] - travel[1] - bent;
     const double modulus =
-        trial[NT_FIT_EFFECTIVE_MODULUS] * std::pow(tried / yielded, nt_fit_describe(options.model).exponent);
-    return yielded > 0.0 ? grid.nearest(modulus) : grid.size() - 1;
+        trial[NT_FIT_EFFECTIVE_MODULUS] * std::pow(tried / deformed, nt_fit_describe(options.model).exponent);
+    return deformed > 0.0 ? grid.nearest(modulus) : grid.size() - 1;
 }
 
 } // namespace

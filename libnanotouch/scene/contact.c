@@ -61,7 +61,7 @@ nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double inde
         return nt_sphere_series_eval(plan->shape.radius, plan->contact.effective_modulus, indentation);
     case NT_FORM_SHAPE:
         return nt_shape_eval(&plan->shape, plan->contact.effective_modulus, indentation);
-    case NT_FORM_YIELDING: /* is in the table, with all that acts around it */
+    case NT_FORM_DEFORMED: /* is in the table, with all that acts around it */
         return (nt_law_value){0.0, 0.0, 0.0, 0.0};
     case NT_FORM_JKR:
         (void)nt_jkr_shape_eval(&plan->jkr, indentation, NT_BRANCH_STABLE, &value);

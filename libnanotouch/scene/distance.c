@@ -22,7 +22,7 @@ static double pull_of(const nt_plan *plan)
  * place of its fold over the distance to it. */
 #define AWAY_FROM_FOLDS 1e-4
 
-/* The contact radius at the largest load [m]. A sample that yields has a round tip, and no law of contact at a depth.
+/* The contact radius at the largest load [m]. A sample that deforms has a round tip, and no law of contact at a depth.
  */
 static double largest_radius(const nt_plan *plan)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What it errs by that terms beside contact add on the undeformed gap, where the sample yields (docs/yielding.md).
+ * What it errs by that terms beside contact add on the undeformed gap, where the sample deforms (docs/deformation.md).
  *
  * e = k^(3/2)/(E* sqrt(2 R F)), F and k the sums of |F| and |k| of the terms on the undeformed gap, is the deformation
  * under their pressure over its range, as Tabor's number is for adhesion. Beside contact the sum is off by at most
@@ -10,8 +10,8 @@
  */
 #include <math.h>
 
+#include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
-#include "scene/yielding/yield.h"
 
 #define BESIDE 0.409    /* 1.025/sqrt(2 pi) */
 #define SLOPE 3.0       /* the stiffness is off by so much more than the force, at most */
@@ -201,21 +201,21 @@ static double shift_of(const nt_plan *plan, int tails)
 
 double nt_plan_rigid_shift(const nt_plan *plan)
 {
-    if (plan->source == NT_ADHESION_NONE || plan->yield.holds)
+    if (plan->source == NT_ADHESION_NONE || plan->deformation.holds)
         return 0.0;
-    return shift_of(plan, plan->yield.count == 0); /* of a table the tail is right */
+    return shift_of(plan, plan->deformation.count == 0); /* of a table the tail is right */
 }
 
-double nt_plan_yield_touch(const nt_plan *plan)
+double nt_plan_deform_touch(const nt_plan *plan)
 {
-    const nt_yield_table *table = plan->relief.count > 0 ? plan->relief.table[0] : &plan->yield;
+    const nt_deform_table *table = plan->relief.count > 0 ? plan->relief.table[0] : &plan->deformation;
     const int touches = table->count > 0 && plan->source == NT_ADHESION_NONE && !isinf(table->touch);
     if (touches && plan->relief.count > 0 && plan->demand.quantity == NT_QUANTITY_STIFFNESS)
-        return 2.0 * plan->yield.jump_error; /* where the laws are held, k jumps */
+        return 2.0 * plan->deformation.jump_error; /* where the laws are held, k jumps */
     if (!touches || plan->demand.quantity != NT_QUANTITY_RADIUS || !(plan->bound.force_error > 0.0))
         return 0.0;
-    const double root = 0.5 * plan->yield.jump_error / plan->bound.force_error;
-    return root * root * plan->contact.radius / (plan->scale * plan->scale) + plan->yield.jump_error;
+    const double root = 0.5 * plan->deformation.jump_error / plan->bound.force_error;
+    return root * root * plan->contact.radius / (plan->scale * plan->scale) + plan->deformation.jump_error;
 }
 
 /* Of an adhesive contact with another w, at an indentation; NaN beyond its fold. */

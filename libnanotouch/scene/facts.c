@@ -9,7 +9,7 @@
 static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
 {
     nt_law_value sum = {0.0, 0.0, 0.0, 0.0};
-    if (attached && !plan->yield.holds)
+    if (attached && !plan->deformation.holds)
         sum = nt_plan_contact_eval(plan, nt_plan_contact_truth(plan), -gap);
     const nt_law_value around = nt_plan_around(plan, attached, gap);
     sum.U += around.U;
@@ -97,8 +97,8 @@ static double strongest_hold(const nt_plan *plan)
 {
     const double release = plan->release_gap;
     double deepest = -3.0 * (plan->source == NT_ADHESION_NONE ? plan->contact.radius : fmax(release, 1e-15));
-    if (plan->yield.holds)
-        deepest = plan->yield.last;
+    if (plan->deformation.holds)
+        deepest = plan->deformation.last;
     else if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
         deepest = -plan->maugis.folds.zero_load_indentation * plan->maugis.indentation_scale;
     double best = fmax(largest_of(plan, pull_out, (sweep){deepest, release, 0}), pull_out(plan, release));
@@ -139,7 +139,8 @@ static double steepest_pull(const nt_plan *plan)
 /* By which U in contact lies above that apart [J]. */
 static double energy_of_contact(const nt_plan *plan, double gap)
 {
-    const double contact = plan->yield.holds ? 0.0 : nt_plan_contact_eval(plan, nt_plan_contact_truth(plan), -gap).U;
+    const double contact =
+        plan->deformation.holds ? 0.0 : nt_plan_contact_eval(plan, nt_plan_contact_truth(plan), -gap).U;
     return contact + nt_plan_rise(plan, NULL, gap);
 }
 
@@ -167,7 +168,7 @@ static double largest_ratio(const nt_plan *plan)
     return nt_plan_follows(plan) ? nt_plan_largest_ratio(plan) : 1.0;
 }
 
-#define BULGED 2.5 /* times as much a surface pulls that bulges, at most, before it jumps (docs/yielding.md) */
+#define BULGED 2.5 /* times as much a surface pulls that bulges, at most, before it jumps (docs/deformation.md) */
 
 /* A bound of |F| at this gap and all larger ones, whatever the history. */
 static double force_limit(const nt_plan *plan, double gap)
@@ -177,7 +178,7 @@ static double force_limit(const nt_plan *plan, double gap)
         if (plan->terms[term].form != NT_FORM_OFF)
             sum += fmax(nt_plan_law_limit(plan, term, gap, NT_QUANTITY_FORCE),
                         fabs(nt_plan_law_eval(plan, term, plan->terms[term].form, gap).F));
-    if (plan->yield.count > 0 && gap < plan->yield.first)
+    if (plan->deformation.count > 0 && gap < plan->deformation.first)
         sum *= BULGED;
     return sum * largest_ratio(plan);
 }

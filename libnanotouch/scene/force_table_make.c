@@ -162,11 +162,11 @@ static void find_specials(making *m)
     const double more[] = {0.0,
                            plan->capture_gap,
                            plan->release_gap,
-                           plan->yield.touch,
-                           plan->yield.first,
-                           plan->yield.hold,
-                           plan->yield.release};
-    for (size_t i = 0; i < sizeof more / sizeof *more - (plan->yield.count > 0 ? 0 : 4); ++i)
+                           plan->deformation.touch,
+                           plan->deformation.first,
+                           plan->deformation.hold,
+                           plan->deformation.release};
+    for (size_t i = 0; i < sizeof more / sizeof *more - (plan->deformation.count > 0 ? 0 : 4); ++i)
         add_special(m, more[i]);
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         if (term != NT_PLAN_CONTACT)

@@ -8,8 +8,8 @@
 #include <math.h>
 
 #include "nanotouch/interaction.h"
+#include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
-#include "scene/yielding/yield.h"
 
 static void add(nt_law_value *sum, nt_law_value term)
 {
@@ -93,8 +93,8 @@ static int has_contact(const nt_plan *plan, const nt_interaction_state *state, c
     return plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF && nt_plan_is_attached(plan, state->attached, place, gap);
 }
 
-/* A sample that yields to all together. */
-static nt_law_value yielding_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place,
+/* A sample that deforms under all together. */
+static nt_law_value deformed_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place,
                                 double gap)
 {
     const int holds = plan->source != NT_ADHESION_NONE && has_contact(plan, state, place, gap);
@@ -108,14 +108,14 @@ static nt_law_value yielding_at(const nt_plan *plan, const nt_interaction_state 
 static vertical relief_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
 {
     const int holds = plan->source != NT_ADHESION_NONE && has_contact(plan, state, place, gap);
-    const nt_bank_value around = nt_yield_relief_at(plan, place, holds, gap);
+    const nt_bank_value around = nt_deform_relief_at(plan, place, holds, gap);
     vertical sum = {.law = around.law, .dU_dR = around.dU_dR};
-    if (!holds || plan->yield.holds)
+    if (!holds || plan->deformation.holds)
         return sum;
     const nt_bank_value contact = nt_plan_contact_at(plan, place, gap);
     const nt_contact here = nt_plan_contact_of_place(plan, place);
     double taken;
-    (void)nt_yield_relief_share(plan, here.radius, &taken);
+    (void)nt_deform_relief_share(plan, here.radius, &taken);
     add(&sum.law, contact.law);
     sum.dU_dR += contact.dU_dR - taken * (2.0 * here.radius * contact.dU_dR - contact.law.U) / here.work_of_adhesion;
     return sum;
@@ -155,8 +155,8 @@ static vertical eval_at(const nt_plan *plan, const nt_interaction_state *state, 
         return (vertical){{gap, gap, gap, gap}, gap, gap, gap};
     if (plan->relief.count > 0 && place)
         return relief_at(plan, state, place, gap);
-    if (plan->yield.count > 0)
-        return (vertical){.law = yielding_at(plan, state, place, gap)};
+    if (plan->deformation.count > 0)
+        return (vertical){.law = deformed_at(plan, state, place, gap)};
     if (nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
         return local_at(plan, state, place, gap);
     return (vertical){.law = uniform_at(plan, state, gap)};
@@ -165,7 +165,7 @@ static vertical eval_at(const nt_plan *plan, const nt_interaction_state *state, 
 nt_law_value nt_interaction_eval_gap(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place,
                                      double gap)
 {
-    const int is_uniform = plan->yield.count == 0 && !nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form);
+    const int is_uniform = plan->deformation.count == 0 && !nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form);
     return is_uniform && !isnan(gap) ? uniform_at(plan, state, gap) : eval_at(plan, state, place, gap).law;
 }
 
@@ -259,7 +259,7 @@ nt_friction_contact nt_interaction_friction_contact(const nt_plan *plan, const n
         return (nt_friction_contact){0.0, 0.0};
     const nt_contact contact = contact_here(plan, place);
     const nt_law_value law =
-        plan->yield.count > 0 ? eval_at(plan, state, place, gap).law : nt_plan_contact_at(plan, place, gap).law;
+        plan->deformation.count > 0 ? eval_at(plan, state, place, gap).law : nt_plan_contact_at(plan, place, gap).law;
     return nt_plan_friction_contact(plan, &contact, law);
 }
 

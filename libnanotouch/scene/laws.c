@@ -73,8 +73,8 @@ static double share_of(const nt_plan *plan, int term)
 double nt_plan_tail_share(const nt_plan *plan)
 {
     double share = 0.0;
-    if (plan->yield.count > 0)
-        return nt_plan_yield_share(plan);
+    if (plan->deformation.count > 0)
+        return nt_plan_deform_share(plan);
     for (int term = 0; term < NT_PLAN_TERMS && plan->source != NT_ADHESION_NONE; ++term)
         share += share_of(plan, term);
     return share;

@@ -3,14 +3,14 @@
 #include <math.h>
 
 #include "core/same_bits.h"
+#include "scene/deformation/deform.h"
 #include "scene/parts.h"
-#include "scene/yielding/yield.h"
 
 double nt_plan_release_gap(const nt_plan *plan, const nt_place *place)
 {
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    if (place && plan->relief.count > 0 && plan->yield.holds)
-        return nt_yield_relief_fold(plan, place->radius.radius, 1);
+    if (place && plan->relief.count > 0 && plan->deformation.holds)
+        return nt_deform_relief_fold(plan, place->radius.radius, 1);
     if (!nt_form_is_local(form))
         return plan->release_gap;
     const nt_contact contact = nt_plan_contact_of_place(plan, place);

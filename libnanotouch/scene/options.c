@@ -13,7 +13,7 @@
 static const double cost_height[2] = {2.0, 2.3};   /* height and slopes */
 static const double cost_radius[2] = {1.0, 1.0};   /* and the effective radius */
 static const double cost_property[2] = {0.7, 0.6}; /* and each property */
-static const double cost_tables[2] = {6.6, 5.4};   /* and four tables of a sample that yields, in place of one */
+static const double cost_tables[2] = {6.6, 5.4};   /* and four tables of a sample that deforms, in place of one */
 
 /* What the first law beside contact costs before its own. A contact that is solved, or looked up, hides it; one by a
  * formula of some operations does less; none at all, least of all. */
@@ -48,12 +48,12 @@ double nt_plan_table_error(const nt_plan *plan, nt_quantity quantity)
     return error;
 }
 
-nt_problem nt_plan_reason(const nt_plan *plan, const char *yields, double error)
+nt_problem nt_plan_reason(const nt_plan *plan, const char *deforms, double error)
 {
     static const char tabled[] = "terms: the table of a law of its own errs by too much beside what is felt (a larger "
                                  "range.maximum_load, or a law that is weaker where it is not visited)";
     const double table = nt_plan_share(plan, nt_plan_table_error(plan, plan->demand.quantity));
-    return (nt_problem){table > error ? tabled : yields, NT_UNIT_ERROR, fmax(table, error), 0.0,
+    return (nt_problem){table > error ? tabled : deforms, NT_UNIT_ERROR, fmax(table, error), 0.0,
                         plan->demand.relative_accuracy};
 }
 
@@ -122,7 +122,7 @@ double nt_plan_cost_of_place(const nt_plan *plan, nt_form form, int which)
     double cost = plan->surface ? cost_height[which] : 0.0;
     if (!nt_form_is_local(form) && plan->relief.count == 0)
         return cost;
-    if (plan->relief.count > 0 && form == NT_FORM_YIELDING)
+    if (plan->relief.count > 0 && form == NT_FORM_DEFORMED)
         cost += cost_tables[which];
     if (plan->followed)
         cost += cost_radius[which];

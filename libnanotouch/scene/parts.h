@@ -40,7 +40,7 @@ static inline int nt_form_is_maugis(nt_form form)
     case NT_FORM_SERIES:
     case NT_FORM_SHAPE:
     case NT_FORM_JKR:
-    case NT_FORM_YIELDING:
+    case NT_FORM_DEFORMED:
         return 0;
     }
     return 0;
@@ -51,7 +51,7 @@ static inline int nt_form_is_local(nt_form form)
 {
     return form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
 }
-/* Whether the force follows what a place is like: its contact, or what the sample yields to. */
+/* Whether the force follows what a place is like: its contact, or how the sample deforms. */
 static inline int nt_plan_follows(const nt_plan *plan)
 {
     return plan->relief.count > 0 || nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form);
@@ -142,7 +142,7 @@ double nt_plan_contact_distance(const nt_plan *plan, nt_form form);
 double nt_plan_curvature_distance(const nt_plan *plan);
 /* From which distance to a fold or to first touch on the bound holds where the folds are in place [m]. */
 double nt_plan_away_from_folds(const nt_plan *plan);
-/* And so many shifts of a fold by what the sample yields to. */
+/* And so many shifts of a fold by how the sample deforms. */
 #define NT_ELASTIC_BESIDE 3.0
 /* What Hertz, DMT and JKR would err by, on what load control can hold, away from its fold; Hertz and DMT know contact
  * only from first touch on. */
@@ -172,8 +172,8 @@ double nt_plan_cost_of_place(const nt_plan *plan, nt_form form, int which);
 double nt_plan_share(const nt_plan *plan, double error);
 /* What the tables of laws of one's own err by [N or N/m]. */
 double nt_plan_table_error(const nt_plan *plan, nt_quantity quantity);
-/* A refusal that names no accuracy: because of what the sample yields to, or of such a table if that errs by more. */
-nt_problem nt_plan_reason(const nt_plan *plan, const char *yields, double error);
+/* A refusal that names no accuracy: because of its deformation, or of such a table if that errs by more. */
+nt_problem nt_plan_reason(const nt_plan *plan, const char *deforms, double error);
 
 /* elastic.c: what the terms beside contact err by where they add on the undeformed gap, as a share of the demand;
  * also the elastic number, and where a sample that is pulled jumps: 0.56 of a pressure as 1/g^3, 0.81 of an
@@ -187,29 +187,29 @@ double nt_plan_jump_gap(const nt_plan *plan);
 /* Whether contact is that of the layer, and not of a half-space. */
 static inline int nt_plan_solves_layer(const nt_plan *plan)
 {
-    return plan->yield.count > 0 && plan->source == NT_ADHESION_NONE;
+    return plan->deformation.count > 0 && plan->source == NT_ADHESION_NONE;
 }
 
 /* Of what acts around an adhesive contact; of folds and radius, with `tails`, also of what the tail pulls more. */
 double nt_plan_around_error(const nt_plan *plan, int tails);
-/* How far the folds of an adhesive contact are from where they would be on a sample that yields [m]. */
+/* How far the folds of an adhesive contact are from where they would be on a sample that deforms [m]. */
 double nt_plan_rigid_shift(const nt_plan *plan);
-/* yielding/yielding.c: the tables of a sample that came to no end, so that no other demand tries them again. */
-enum { NT_YIELD_TRIED = 64 };
-typedef struct nt_yield_end {
+/* deformation/deform.c: the tables of a sample that came to no end, so that no other demand tries them again. */
+enum { NT_DEFORM_TRIED = 64 };
+typedef struct nt_deform_end {
     double tolerance, scale;
     int surrounded;
     nt_status status;
-} nt_yield_end;
-typedef struct nt_yield_tried {
-    nt_yield_end end[NT_YIELD_TRIED];
+} nt_deform_end;
+typedef struct nt_deform_tried {
+    nt_deform_end end[NT_DEFORM_TRIED];
     int count;
-} nt_yield_tried;
-/* The plan of a scene whose sample yields to all terms together. `tried`: of this scene. */
-nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tried, nt_problem *problem);
-/* yielding/adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share of
- * the demand. NT_E_RANGE: contact and table do not fit. */
-nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
+} nt_deform_tried;
+/* The plan of a scene whose sample deforms under all terms together. `tried`: of this scene. */
+nt_status nt_plan_deform(nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried, nt_problem *problem);
+/* deformation/adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share
+ * of the demand. NT_E_RANGE: contact and table do not fit. */
+nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
 /* Whether other laws press on the sample around its adhesive contact by so much that contact and laws are solved
  * together. */
 int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene);
@@ -217,23 +217,23 @@ int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene);
 void nt_plan_hold_facts(nt_plan *plan, double maximum_load);
 /* All beside contact, with everything on, where contact holds or does not; at the tip's own radius. */
 nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap);
-/* What a yielded tail pulls of w in contact [J/m^2]. */
-double nt_plan_yield_share(const nt_plan *plan);
+/* What a deformed tail pulls of w in contact [J/m^2]. */
+double nt_plan_deform_share(const nt_plan *plan);
 /* U of that where contact holds less U where it does not, at a place (NULL: the tip's own radius) [J]. */
 double nt_plan_rise(const nt_plan *plan, const nt_place *place, double gap);
 /* How far from first touch of a table without adhesion the bound of its contact radius begins [m]. */
-double nt_plan_yield_touch(const nt_plan *plan);
+double nt_plan_deform_touch(const nt_plan *plan);
 /* relief.c: where adhesion takes hold at a place (NULL: at the tip's own radius) [m]. */
 double nt_plan_capture_gap(const nt_plan *plan, const nt_place *place);
 
 /* plan.c: begun and decided, without the facts of a plan that is made. */
-nt_status nt_plan_try(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, nt_problem *problem);
+nt_status nt_plan_try(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, nt_problem *problem);
 /* refusal.c: what can be demanded of a sample for which no table was made; NT_E_RANGE. */
 nt_status nt_plan_refuse(const nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
 /* And what is said of a plan that was refused for a reason: an accuracy that is planned, near the smallest, or why
  * there is none. */
 #define NT_DEMANDED "demand.relative_accuracy"
-nt_problem nt_plan_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, const nt_problem *reason);
+nt_problem nt_plan_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, const nt_problem *reason);
 static inline int nt_problem_names(const nt_problem *problem, const char *field)
 {
     return problem->field && strcmp(problem->field, field) == 0;

@@ -6,8 +6,8 @@
 #include <math.h>
 
 #include "core/same_bits.h"
+#include "scene/deformation/deform.h"
 #include "scene/parts.h"
-#include "scene/yielding/yield.h"
 
 static int has(const nt_surface *property)
 {
@@ -73,10 +73,10 @@ nt_contact nt_plan_contact_of_place(const nt_plan *plan, const nt_place *place)
         contact.effective_modulus = nt_plan_effective_modulus(plan, place->youngs_modulus.value);
     if (place->work_of_adhesion.value > 0.0)
         set_work(plan, &contact, place->work_of_adhesion.value - plan->tail);
-    if (plan->relief.count > 0 && !plan->yield.jumps && plan->source != NT_ADHESION_NONE) {
+    if (plan->relief.count > 0 && !plan->deformation.jumps && plan->source != NT_ADHESION_NONE) {
         double slope;
         set_work(plan, &contact,
-                 plan->contact.work_of_adhesion + plan->tail - nt_yield_relief_share(plan, contact.radius, &slope));
+                 plan->contact.work_of_adhesion + plan->tail - nt_deform_relief_share(plan, contact.radius, &slope));
     }
     return contact;
 }

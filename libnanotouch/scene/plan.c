@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
-#include "scene/yielding/yield.h"
 
 #define STIFF 0.1       /* elastic number of samples that may count as rigid */
 #define WORST 0.5       /* an error that is no bound any more: the largest that can be demanded */
@@ -51,13 +51,14 @@ static void finish(nt_plan *plan, double maximum_load)
         nt_plan_local_facts(plan, maximum_load);
     else
         plan->bound.fold_shift += nt_plan_curvature_shift(plan);
-    if (plan->yield.count > 0 && plan->yield.jumps)
-        plan->bound.fold_shift += plan->yield.jump_error;
+    if (plan->deformation.count > 0 && plan->deformation.jumps)
+        plan->bound.fold_shift += plan->deformation.jump_error;
     plan->bound.fold_shift += nt_plan_rigid_shift(plan);
-    plan->fold_distance = nt_plan_away_from_folds(plan) + plan->bound.fold_shift + nt_plan_yield_touch(plan);
+    plan->fold_distance = nt_plan_away_from_folds(plan) + plan->bound.fold_shift + nt_plan_deform_touch(plan);
     plan->fold_distance += (NT_ELASTIC_BESIDE - 1.0) * nt_plan_rigid_shift(plan);
-    if (plan->yield.count > 0 && plan->yield.jumps && plan->demand.quantity == NT_QUANTITY_STIFFNESS) /* k ~ 1/sqrt */
-        plan->fold_distance += plan->yield.jump_error / plan->bound.force_error;
+    if (plan->deformation.count > 0 && plan->deformation.jumps &&
+        plan->demand.quantity == NT_QUANTITY_STIFFNESS) /* k ~ 1/sqrt */
+        plan->fold_distance += plan->deformation.jump_error / plan->bound.force_error;
     if (form == NT_FORM_SHAPE && plan->source != NT_ADHESION_NONE) { /* adhesion that cannot be felt: no folds */
         plan->bound.fold_shift = fmax(plan->release_gap, plan->capture_gap);
         plan->capture_gap = plan->release_gap = plan->capture_energy = plan->release_energy = 0.0;
@@ -157,26 +158,26 @@ static int is_left(const nt_plan *plan, double maximum_load)
 
 /* Where no table keeps to the demand: the finest that does better than terms on the undeformed gap. What is the same
  * for every demand is tried in the same order, so that a stricter demand has no looser bound. */
-static nt_status yield_at_best(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tried)
+static nt_status deform_at_best(nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried)
 {
     const double demanded = plan->demand.relative_accuracy, errs = fmax(plan->rigid_error, plan->around_error);
     nt_problem least = {0};
     if (!(demanded > 0.0) || plan->properties)
         return NT_E_RANGE;
     plan->demand.relative_accuracy = STRICTEST;
-    nt_status status = nt_plan_yield(plan, scene, tried, &least);
+    nt_status status = nt_plan_deform(plan, scene, tried, &least);
     double wanted = nt_problem_names(&least, NT_DEMANDED) ? least.minimum : (double)INFINITY;
     for (int i = 0; i < TRIES && status != NT_OK && wanted < errs; ++i) {
         plan->demand.relative_accuracy = wanted;
-        status = nt_plan_yield(plan, scene, tried, NULL);
+        status = nt_plan_deform(plan, scene, tried, NULL);
         wanted *= COARSER;
     }
     plan->demand.relative_accuracy = demanded;
     return status;
 }
 
-/* As it was before a sample was to yield. */
-static nt_status unyield(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, nt_problem *problem)
+/* As it was before a sample was to deform. */
+static nt_status undeform(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, nt_problem *problem)
 {
     const nt_status status = nt_plan_adhere(plan, scene, problem);
     nt_plan_options_of(plan, scene, options);
@@ -184,8 +185,8 @@ static nt_status unyield(nt_plan *plan, const nt_scene *scene, nt_plan_options *
 }
 
 /* The cheapest plan whose terms add on the undeformed gap, with what that errs by in its bound; if it errs by too much,
- * the sample yields. A demand of 0 asks for every law in full. */
-static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tried, nt_problem *problem)
+ * the sample deforms. A demand of 0 asks for every law in full. */
+static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried, nt_problem *problem)
 {
     const int adheres = plan->source != NT_ADHESION_NONE;
     nt_plan_options options;
@@ -200,30 +201,30 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tr
     if ((demanded > 0.0 || errs <= UNASKED) && choose_rigid(plan, &options, 1, NULL) == NT_OK)
         return NT_OK;
     nt_problem reason = {0};
-    if (!plan->properties && nt_plan_yield(plan, scene, tried, &reason) == NT_OK)
+    if (!plan->properties && nt_plan_deform(plan, scene, tried, &reason) == NT_OK)
         return NT_OK;
     if (problem)
         *problem = reason;
-    status = adheres ? unyield(plan, scene, &options, problem) : NT_OK;
+    status = adheres ? undeform(plan, scene, &options, problem) : NT_OK;
     if (!is_left(plan, scene->range.maximum_load))
         return nt_plan_refuse(plan, &options, problem);
     if (status == NT_OK)
         status = choose_rigid(plan, &options, 0, problem); /* a demand or a budget that nothing keeps is refused */
-    if (status != NT_OK || yield_at_best(plan, scene, tried) == NT_OK)
+    if (status != NT_OK || deform_at_best(plan, scene, tried) == NT_OK)
         return status;
-    status = adheres ? unyield(plan, scene, &options, problem) : NT_OK;
+    status = adheres ? undeform(plan, scene, &options, problem) : NT_OK;
     return status == NT_OK ? choose_rigid(plan, &options, 0, problem) : status;
 }
 
 /* From a plan as it was begun. */
-static nt_status decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, nt_problem *problem)
+static nt_status decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, nt_problem *problem)
 {
     const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
     plan->bank = inputs->bank;
     return choose(plan, &scene, tried, problem);
 }
 
-nt_status nt_plan_try(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, nt_problem *problem)
+nt_status nt_plan_try(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, nt_problem *problem)
 {
     const nt_status status = nt_plan_begin(plan, inputs, problem);
     return status == NT_OK ? decide(plan, inputs, tried, problem) : status;
@@ -233,7 +234,7 @@ nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem
 {
     nt_problem reason = {0};
     const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
-    nt_yield_tried tried = {.count = 0};
+    nt_deform_tried tried = {.count = 0};
     nt_status status = decide(plan, inputs, &tried, &reason);
     if (status != NT_OK) {
         if (problem)

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/deformation/deform.h"
 #include "scene/parts.h"
-#include "scene/yielding/yield.h"
 
 #define ONSET 1.6
 #define PLASTIC 3.0
@@ -32,17 +32,17 @@ static double mean_pressure(const nt_law_value *law)
     return law->F / (NT_PI * law->a * law->a);
 }
 
-/* Without adhesion a table knows what presses on a sample that yields, before contact, too. */
+/* Without adhesion a table knows what presses on a sample that deforms, before contact, too. */
 static int is_tabulated(const nt_plan *plan)
 {
-    return plan->yield.count > 0 && plan->source == NT_ADHESION_NONE;
+    return plan->deformation.count > 0 && plan->source == NT_ADHESION_NONE;
 }
 
 /* Hertz's 2 E* a/(pi R), of which adhesion takes away; of tips that are not round 1.5 times the mean. */
 static double peak_pressure(const nt_plan *plan, const nt_scene *scene)
 {
     if (is_tabulated(plan))
-        return nt_yield_table_pressure(&plan->yield, scene->range.maximum_load, nt_yield_peak_at);
+        return nt_deform_table_pressure(&plan->deformation, scene->range.maximum_load, nt_deform_peak_at);
     const nt_law_value law = at(plan, plan->largest_indentation);
     const nt_shape_kind kind = plan->shape.kind;
     const double hertz = 2.0 * plan->contact.effective_modulus * law.a / (NT_PI * plan->contact.radius);
@@ -54,7 +54,7 @@ static double peak_pressure(const nt_plan *plan, const nt_scene *scene)
 static double largest_mean(const nt_plan *plan, const nt_scene *scene)
 {
     if (is_tabulated(plan))
-        return nt_yield_table_pressure(&plan->yield, scene->range.maximum_load, nt_yield_mean_at);
+        return nt_deform_table_pressure(&plan->deformation, scene->range.maximum_load, nt_deform_mean_at);
     const nt_law_value law = at(plan, plan->largest_indentation);
     return mean_pressure(&law);
 }
@@ -63,7 +63,7 @@ static double largest_mean(const nt_plan *plan, const nt_scene *scene)
 static double load_at(const nt_plan *plan, double pressure)
 {
     if (is_tabulated(plan))
-        return KEEPS * nt_yield_table_load(&plan->yield, pressure, nt_yield_mean_at);
+        return KEEPS * nt_deform_table_load(&plan->deformation, pressure, nt_deform_mean_at);
     double low = 0.0, high = plan->largest_indentation;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
@@ -93,7 +93,7 @@ static nt_status check_dents(const nt_plan *plan, const nt_scene *scene, nt_prob
     if (!(scene->sample.yield_strength > 0.0))
         return refuse_dents(problem, (nt_problem){"sample.yield_strength (of a sample that keeps dents)", "Pa",
                                                   scene->sample.yield_strength, 1.0, 1e12});
-    if (plan->source != NT_ADHESION_NONE || plan->on_count > 0 || plan->yield.count > 0)
+    if (plan->source != NT_ADHESION_NONE || plan->on_count > 0 || plan->deformation.count > 0)
         return refuse_dents(problem, (nt_problem){"sample.dents (beside adhesion or other forces than contact, which a "
                                                   "sample that keeps dents does not know)",
                                                   "no|yes", 1.0, 0.0, 0.0});

@@ -17,12 +17,12 @@
 nt_status nt_plan_laws_at(nt_plan *plan, const nt_scene *scene, double work_of_adhesion, nt_problem *problem)
 {
     nt_plan_contact_of(plan, scene, work_of_adhesion);
-    if (plan->yield.count > 0 && plan->yield.jumps)
-        plan->capture_gap = plan->yield.touch;
+    if (plan->deformation.count > 0 && plan->deformation.jumps)
+        plan->capture_gap = plan->deformation.touch;
     nt_status status = nt_plan_laws_of(plan, scene, problem);
     if (status == NT_OK)
         status = nt_plan_contact_laws(plan, scene);
-    if (status == NT_OK && plan->yield.holds)
+    if (status == NT_OK && plan->deformation.holds)
         nt_plan_hold_facts(plan, scene->range.maximum_load);
     return status == NT_OK ? nt_plan_facts(plan) : status;
 }

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
-#include "scene/yielding/yield.h"
 
 #define NEAR 1.1             /* what is named over the smallest accuracy of which there is a plan, at most */
 #define NEAR_OVER_RELIEF 2.0 /* the same where each plan makes the tables of many radii */
@@ -37,13 +37,13 @@ static nt_term_refused words_of(const nt_plan *plan)
 {
     static const nt_term_refused nameless = NT_TERM_REFUSED("the forces before contact");
     const nt_term_refused words = nt_term_rows[strongest(plan)]->refused;
-    return words.yields ? words : nameless;
+    return words.deforms ? words : nameless;
 }
 
 /* By the name of that law. */
 static nt_problem by_law(const nt_plan *plan, double error)
 {
-    return nt_plan_reason(plan, words_of(plan).yields, error);
+    return nt_plan_reason(plan, words_of(plan).deforms, error);
 }
 
 /* What can be demanded of a sample for which no table was made: the terms on the undeformed gap, where they are better.
@@ -60,7 +60,7 @@ nt_status nt_plan_refuse(const nt_plan *plan, const nt_plan_options *options, nt
     const int finer = problem && nt_problem_names(problem, NT_DEMANDED) &&
                       problem->minimum < field->maximum; /* a table of another demand would do */
     if (problem && !finer && !(least < field->maximum)) {
-        if (!nt_problem_names(problem, NT_YIELD_SPREAD))
+        if (!nt_problem_names(problem, NT_DEFORM_SPREAD))
             *problem = by_law(plan, fmax(plan->rigid_error, plan->around_error));
         return NT_E_RANGE;
     }
@@ -71,7 +71,7 @@ nt_status nt_plan_refuse(const nt_plan *plan, const nt_plan_options *options, nt
 }
 
 /* Whether there is a plan of another accuracy, if not of that budget, too. */
-static int is_planned(nt_plan *plan, const nt_plan_inputs *inputs, double accuracy, nt_yield_tried *tried,
+static int is_planned(nt_plan *plan, const nt_plan_inputs *inputs, double accuracy, nt_deform_tried *tried,
                       nt_problem *problem)
 {
     nt_plan_inputs asked = *inputs;
@@ -90,7 +90,7 @@ static double printed(double accuracy)
 }
 
 /* An accuracy of which there is a plan: what a refusal named, or what that names, or the largest there is. 0: none. */
-static double find(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, const nt_problem *first)
+static double find(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, const nt_problem *first)
 {
     nt_problem reason = *first;
     double named = 0.0;
@@ -105,7 +105,7 @@ static double find(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *
 }
 
 /* One that is near the smallest, between what is refused and what is planned: bisected. */
-static double narrow(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, double planned)
+static double narrow(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, double planned)
 {
     const double near = plan->relief.room ? NEAR_OVER_RELIEF : NEAR;
     double low = fmax(plan->demand.relative_accuracy, STRICTEST), high = planned;
@@ -119,7 +119,7 @@ static double narrow(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried
     return high;
 }
 
-static nt_problem keep_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried,
+static nt_problem keep_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried,
                             const nt_problem *reason)
 {
     int count = 0;
@@ -145,7 +145,7 @@ static nt_problem stay_away(nt_plan *plan, const nt_plan_inputs *inputs, const n
     asked.scene = &scene;
     double gap = nt_plan_jump_gap(plan);
     for (int i = 0; i < FARTHER_TRIES; ++i) {
-        nt_yield_tried tried = {.count = 0};
+        nt_deform_tried tried = {.count = 0};
         gap = printed(FARTHER * gap);
         scene.range.minimum_gap = gap;
         if (nt_plan_try(plan, &asked, &tried, NULL) == NT_OK)
@@ -154,7 +154,7 @@ static nt_problem stay_away(nt_plan *plan, const nt_plan_inputs *inputs, const n
     return *reason;
 }
 
-nt_problem nt_plan_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, const nt_problem *reason)
+nt_problem nt_plan_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, const nt_problem *reason)
 {
     const int jumps = plan->source == NT_ADHESION_NONE && !plan->properties && isinf(plan->rigid_error);
     const int by_law = reason->unit && strcmp(reason->unit, NT_UNIT_ERROR) == 0;

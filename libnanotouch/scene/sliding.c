@@ -26,7 +26,8 @@ nt_friction_contact nt_plan_friction_contact(const nt_plan *plan, const nt_conta
     if (plan->source != NT_ADHESION_NONE)
         found.compressive_load = nt_compressive_load(NT_MAUGIS, contact, law);
     else
-        found.compressive_load = plan->yield.count > 0 ? nt_compressive_load(NT_HERTZ, contact, law) : fmax(law.F, 0.0);
+        found.compressive_load =
+            plan->deformation.count > 0 ? nt_compressive_load(NT_HERTZ, contact, law) : fmax(law.F, 0.0);
     return found;
 }
 
@@ -135,7 +136,7 @@ static nt_status take(nt_plan *plan, const errors *of, nt_problem *problem)
     const nt_plan_term *contact = &plan->terms[NT_PLAN_CONTACT];
     term->form = NT_FORM_ON;
     term->words = "sticks and slips";
-    term->bound = plan->yield.count > 0 || plan->dents ? (double)NAN : of->computed;
+    term->bound = plan->deformation.count > 0 || plan->dents ? (double)NAN : of->computed;
     term->cost = contact->cost + cost_step[0] + asks_load * cost_load[0];
     term->latency = contact->latency + cost_step[1] + asks_load * cost_load[1];
     plan->cost += term->cost;
@@ -163,7 +164,7 @@ nt_status nt_plan_friction_of(nt_plan *plan, const nt_plan_inputs *inputs, nt_pr
     const errors found = errors_of(plan, scene.range.maximum_load);
     plan->friction.term.force = found.largest;
     plan->friction.term.bound = found.left_out;
-    if (plan->yield.count == 0 && !plan->dents && found.left_out <= plan->demand.relative_accuracy)
+    if (plan->deformation.count == 0 && !plan->dents && found.left_out <= plan->demand.relative_accuracy)
         return NT_OK;
     return take(plan, &found, problem);
 }
@@ -175,7 +176,7 @@ void nt_plan_warn_friction(nt_plan *plan)
     if (term->form == NT_FORM_OFF)
         return;
     if (isnan(term->bound) && !plan->dents)
-        nt_plan_add_warning(plan, (nt_plan_warning){"friction on a sample that yields, whose bound is not known: its "
+        nt_plan_add_warning(plan, (nt_plan_warning){"friction on a sample that deforms, whose bound is not known: its "
                                                     "largest force about",
                                                     "N", term->force, NAN});
     else if (demanded > 0.0 && term->bound > demanded)

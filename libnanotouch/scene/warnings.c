@@ -70,8 +70,8 @@ static void check_surface(nt_plan *plan)
 #define ROUNDED (1.0 + 1e-9)
 #define SPHERE 0.1 /* over delta/R: what the force of a sphere lacks of its paraboloid's */
 
-/* A layer in contact is solved with what it yields to; Hertz' contact and one with adhesion are those of a half-space.
- * Two terms of Dimitriadis et al. (2002), bonded, say by how much more force the layer takes. */
+/* A layer in contact is solved together with its deformation; Hertz' contact and one with adhesion are those of a
+ * half-space. Two terms of Dimitriadis et al. (2002), bonded, say by how much more force the layer takes. */
 static void check_layer(nt_plan *plan, const nt_scene *scene)
 {
     const double nu = scene->sample.poisson_ratio, chi = plan->validity.thickness_ratio;
@@ -83,30 +83,32 @@ static void check_layer(nt_plan *plan, const nt_scene *scene)
                                     more, demanded});
 }
 
-/* A sample that yields has a paraboloid before it. With adhesion, or where something pulls, the terms beside contact
+/* A sample that deforms has a paraboloid before it. With adhesion, or where something pulls, the terms beside contact
  * may add on the undeformed gap though that errs by more than is demanded: it is part of the bound. */
-static void check_yielding(nt_plan *plan)
+static void check_deformed(nt_plan *plan)
 {
     const double demanded = plan->demand.relative_accuracy;
     const double flatter = SPHERE * plan->largest_indentation / plan->contact.radius;
-    if (plan->yield.count > 0 && plan->shape.kind == NT_SHAPE_SPHERE && flatter > demanded)
+    if (plan->deformation.count > 0 && plan->shape.kind == NT_SHAPE_SPHERE && flatter > demanded)
         nt_plan_add_warning(
             plan, (nt_plan_warning){"sphere taken for a paraboloid, whose force is larger by", "", flatter, demanded});
-    if (plan->yield.count > 0 && demanded > 0.0 && plan->bound.force_error > demanded * ROUNDED)
-        nt_plan_add_warning(plan, (nt_plan_warning){"error of a sample that yields, more than demanded: no finer table "
-                                                    "of it is made",
-                                                    "", plan->bound.force_error, demanded});
+    if (plan->deformation.count > 0 && demanded > 0.0 && plan->bound.force_error > demanded * ROUNDED)
+        nt_plan_add_warning(plan,
+                            (nt_plan_warning){"error of a sample that deforms, more than demanded: no finer table "
+                                              "of it is made",
+                                              "", plan->bound.force_error, demanded});
     const double rigid = fmax(plan->rigid_error, plan->around_error);
-    const int left = plan->yield.count == 0 && rigid > 0.0 && plan->bound.force_error >= rigid;
+    const int left = plan->deformation.count == 0 && rigid > 0.0 && plan->bound.force_error >= rigid;
     if (left && isinf(rigid)) /* beyond a jump no error is known */
         nt_plan_add_warning(plan,
                             (nt_plan_warning){"sample jumps to the tip before contact, so that no bound is known: "
                                               "elastic number",
                                               "", plan->elastic_number, NT_ELASTIC_JUMP});
     else if (left && plan->bound.force_error > (demanded > 0.0 ? demanded : 0.01))
-        nt_plan_add_warning(plan, (nt_plan_warning){"error of forces before contact, to which this sample yields, more "
-                                                    "than demanded and part of the bound",
-                                                    "", rigid, demanded});
+        nt_plan_add_warning(plan,
+                            (nt_plan_warning){"error of forces before contact, under which this sample deforms, more "
+                                              "than demanded and part of the bound",
+                                              "", rigid, demanded});
 }
 
 /* Nearer than fold_distance to a fold the bound does not hold. Where strong laws move the folds of a soft sample by
@@ -132,7 +134,7 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     check_drag(plan, scene);
     check_surface(plan);
     nt_plan_warn_flank(plan);
-    check_yielding(plan);
+    check_deformed(plan);
     check_folds(plan);
     check_layer(plan, scene);
     nt_plan_warn_friction(plan);

@@ -20,7 +20,7 @@ struct nt_terrain {
         nt_maugis_bank bank;
         double *coefficients, *ratios;
         nt_maugis_bank_memory tables;
-        nt_yield_table *room;
+        nt_deform_table *room;
     } own; /* what was made here */
 };
 
@@ -150,7 +150,7 @@ static nt_status make_plan(nt_terrain *terrain, const nt_terrain_setup *setup, n
                              .properties = setup->properties};
     nt_maugis_bank_options options;
     if (terrain->radii) {
-        inputs.room = terrain->own.room = calloc(NT_YIELD_RADII, sizeof *inputs.room);
+        inputs.room = terrain->own.room = calloc(NT_DEFORM_RADII, sizeof *inputs.room);
         if (!inputs.room)
             return NT_E_NO_MEMORY;
     }

@@ -46,7 +46,7 @@ typedef struct unstable_law {
 static int has_unstable(const nt_plan *plan, const nt_place *place, unstable_law *law)
 {
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    if (plan->yield.count > 0 || !(plan->contact.work_of_adhesion > 0.0))
+    if (plan->deformation.count > 0 || !(plan->contact.work_of_adhesion > 0.0))
         return 0;
     law->jkr = form == NT_FORM_JKR ? &plan->jkr : NULL;
     if (law->jkr)

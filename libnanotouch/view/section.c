@@ -41,7 +41,7 @@ static double cohesive_radius(const nt_view_contact *contact, double force)
 }
 
 /* The sum of all forces as Hertz' would deform the bodies; what pulls deforms nothing that is drawn. */
-static nt_view_contact yielding(const nt_plan *plan, nt_view_contact contact, double force)
+static nt_view_contact deformed(const nt_plan *plan, nt_view_contact contact, double force)
 {
     contact.indentation = force > 0.0 ? nt_shape_indentation(&plan->shape, contact.modulus, force) : 0.0;
     contact.contact_radius = nt_shape_eval(&plan->shape, contact.modulus, contact.indentation).a;
@@ -62,8 +62,8 @@ nt_view_contact nt_view_contact_at(const nt_plan *plan, const nt_place *place, c
                                .tip_share = pose->tip_share};
     if (nt_plan_follows(plan))
         contact.shape.radius = contact.radius;
-    if (plan->yield.count > 0)
-        return yielding(plan, contact, pose->force);
+    if (plan->deformation.count > 0)
+        return deformed(plan, contact, pose->force);
     contact.attached = is_attached(plan, place, pose);
     if (!contact.attached)
         return contact;

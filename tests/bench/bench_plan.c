@@ -106,7 +106,7 @@ static void only(nt_form form)
 {
     plan.on_count = 0;
     plan.terms[NT_PLAN_CONTACT].form = form;
-    plan.yield.count = 0;
+    plan.deformation.count = 0;
 }
 
 static void report_contact(void)
@@ -248,10 +248,10 @@ static void report_plan(const char *name, int over)
            in_unit.latency / plan.latency);
 }
 
-/* Soft samples, which yield: dry and sticky, or pushed by a double layer; flat and over relief. */
-static void report_yielding(void)
+/* Soft samples, which deform: dry and sticky, or pushed by a double layer; flat and over relief. */
+static void report_deformed(void)
 {
-    static nt_yield_table room[NT_YIELD_RADII];
+    static nt_deform_table room[NT_DEFORM_RADII];
     for (int wet = 0; wet < 3; ++wet)
         for (int over = 0; over < 2; ++over) {
             static const char *const names[] = {"", " to a double layer", " to a double layer, sticky"};
@@ -274,9 +274,9 @@ static void report_yielding(void)
                 inputs.radii = &radii;
                 inputs.room = room;
             }
-            if (make(&inputs) != NT_OK || plan.yield.count == 0)
+            if (make(&inputs) != NT_OK || plan.deformation.count == 0)
                 continue;
-            (void)snprintf(name, sizeof name, "yielding%s%s", names[wet], over ? ", relief" : "");
+            (void)snprintf(name, sizeof name, "deforming%s%s", names[wet], over ? ", relief" : "");
             report_plan(name, over);
         }
 }
@@ -342,7 +342,7 @@ int main(int argc, char **argv)
     report_laws(NT_FORM_TABLE);
     scene = nt_scene_defaults();
     report_surface(&scene);
-    report_yielding();
+    report_deformed();
     const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 10) : 7;
     report_random(seed, 0);
     report_random(seed, 1);

@@ -13,7 +13,7 @@
 static inline void draw_scene(plot *p, dice *d)
 {
     nt_scene *scene = &p->setup.scene;
-    const int soft = chance(d, 0.08); /* one that yields to forces before contact takes long to compute */
+    const int soft = chance(d, 0.08); /* one that deforms under forces before contact takes long to compute */
     scene->sample.youngs_modulus = soft ? magnitude(d, 1e6, 5e9) : magnitude(d, 5e9, 1e12);
     scene->sample.poisson_ratio = between(d, 0.1, 0.5);
     scene->tip.radius = magnitude(d, 5e-9, 300e-9);

@@ -105,14 +105,14 @@ static void expect(double fact, double found)
         fail_msg("%.9g, but the search finds %.9g", fact, found);
 }
 
-/* Of laws that add on the undeformed gap; of a sample that yields to them the facts are those of its table. */
+/* Of laws that add on the undeformed gap; of a sample that deforms under them the facts are those of its table. */
 static int make_both(const nt_scene *scene, double accuracy)
 {
     const nt_demand demand = {.relative_accuracy = accuracy};
     const nt_plan_inputs inputs = {.scene = scene, .demand = &demand};
     const int made = nt_plan_make(&plan, &inputs, NULL) == NT_OK;
     make(&whole, scene, 0.0);
-    return made && plan.yield.count == 0 && whole.yield.count == 0;
+    return made && plan.deformation.count == 0 && whole.deformation.count == 0;
 }
 
 static void compare_pull(const nt_scene *scene)
@@ -189,8 +189,8 @@ static void the_strongest_pull_is_found_wherever_it_is(void **state)
     for (int i = 0; i < (int)(sizeof place / sizeof *place); i++) {
         const well w = {10.0 * pull, place[i][0], place[i][0] * place[i][1]};
         const nt_scene scene = with_well(soft, &w);
-        if (!make_both(&scene, 0.0)) { /* the first yields: its well is inside the jump of the surface */
-            assert_true(i == 0 && plan.yield.count > 0);
+        if (!make_both(&scene, 0.0)) { /* the first deforms: its well is inside the jump of the surface */
+            assert_true(i == 0 && plan.deformation.count > 0);
             continue;
         }
         compare_pull(&scene);

@@ -84,7 +84,7 @@ static double to_bend(double gap)
 {
     double near = smaller(fabs(gap), fabs(gap - plan.capture_gap));
     near = smaller(near, fabs(gap - plan.release_gap));
-    return plan.yield.count > 0 ? smaller(near, fabs(gap - plan.yield.touch)) : near;
+    return plan.deformation.count > 0 ? smaller(near, fabs(gap - plan.deformation.touch)) : near;
 }
 
 /* Random gaps: over the whole range, and ever nearer to where it bends; both histories. Returns how many. */

@@ -136,8 +136,8 @@ static void hysteresis_only_dissipates(void **state)
         scene.sample.youngs_modulus = pow(10.0, 7.0 + 4.0 * nt_random_uniform(&random));
         scene.medium.film_thickness = 1e-9 * nt_random_uniform(&random);
         scene.medium.relative_humidity *= 0.5 + nt_random_uniform(&random);
-        make_plan_within(&scene, NULL, 0.2); /* some of the samples yield */
-        jumped += plan.yield.count > 0 && plan.yield.jumps;
+        make_plan_within(&scene, NULL, 0.2); /* some of the samples deform */
+        jumped += plan.deformation.count > 0 && plan.deformation.jumps;
         const double far = 1.5 * plan.release_gap, scale = plan.pull_off_force * plan.release_gap;
         nt_interaction_state history = {0};
         double gap = far, work = 0.0;

@@ -51,7 +51,7 @@ static void errors_have_the_scale_of_their_quantity(void **state)
 
 /* Contact without adhesion is off by 1e-12 of its force, of which the demanded whole is 1 + T/S: T the strongest pull
  * of all other terms, each of which is tried alone; sampled, with 5 % to spare. Under a hydration that pulls the sample
- * yields, and contact has no form of its own. */
+ * deforms, and contact has no form of its own. */
 static void the_error_of_contact_knows_every_pull_beside_it(void **state)
 {
     (void)state;

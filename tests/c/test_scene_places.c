@@ -196,7 +196,7 @@ static void bounds_hold_at_every_place(void **state)
             if (q >= 2) /* what a tail does to the soft places cannot be planned so well */
                 scene.adhesion.hamaker_constant = 0.0;
             if (make(&scene, demands[q / 2], quantities[q % 2], NULL) != NT_OK)
-                continue; /* so soft that it yields to van der Waals before contact */
+                continue; /* so soft that it deforms under van der Waals before contact */
             made++;
             nt_random random = nt_random_seed((uint64_t)q);
             double worst = 0.0;

@@ -41,10 +41,10 @@ static void the_contact_law_follows_from_the_scene(void **state)
     nt_demand demand = nt_demand_defaults();
     const nt_scene silicon = nt_scene_defaults();
     nt_scene none = dry_silicon(), cone = dry_silicon(), far = dry_silicon(), tailless = silicon;
-    none.adhesion.work_of_adhesion = none.adhesion.hamaker_constant = 0.0; /* to a pull the sample would yield */
+    none.adhesion.work_of_adhesion = none.adhesion.hamaker_constant = 0.0; /* under a pull the sample would deform */
     cone.tip.shape = NT_SHAPE_CONE;
     far.range.minimum_gap = 10e-9;
-    tailless.adhesion.hamaker_constant = 0.0; /* with a tail the sample yields, and its table has no such bound */
+    tailless.adhesion.hamaker_constant = 0.0; /* with a tail the sample deforms, and its table has no such bound */
     assert_int_equal(contact_form(&silicon, &demand), NT_FORM_TABLE);
     assert_int_equal(contact_form(&none, &demand), NT_FORM_SHAPE);
     assert_int_equal(contact_form(&cone, &demand), NT_FORM_JKR);
@@ -141,8 +141,8 @@ static void a_plan_keeps_its_bound(void **state)
         if (make(&plan, &scene, &demand) != NT_OK)
             continue;
         assert_int_equal(make(&full, &scene, &exact), NT_OK);
-        if ((plan.yield.count > 0) != (full.yield.count > 0))
-            continue; /* of a sample that yields the truth is nanotouch.reference's */
+        if ((plan.deformation.count > 0) != (full.deformation.count > 0))
+            continue; /* of a sample that deforms the truth is nanotouch.reference's */
         made++;
         const double bound = plan.bound.force_error + full.bound.force_error;
         for (double gap = -3.0 * full.release_gap; gap < 100e-9; gap += 0.01 * full.release_gap + 0.01 * fabs(gap))
@@ -153,7 +153,7 @@ static void a_plan_keeps_its_bound(void **state)
                 if (fabs(gap - full.release_gap) > 1e-6 * full.release_gap)
                     assert_true(error <= bound * larger(fabs(F), full.pull_off_force));
             }
-        const double rigid = plan.yield.count > 0 ? 0.0 : larger(plan.rigid_error, plan.around_error);
+        const double rigid = plan.deformation.count > 0 ? 0.0 : larger(plan.rigid_error, plan.around_error);
         const double beyond = rigid >= demand.relative_accuracy ? rigid * (1.0 + 1e-12) : 0.0; /* which is warned of */
         assert_true(plan.bound.force_error <= demand.relative_accuracy + beyond && plan.cost <= full.cost);
     }
@@ -299,7 +299,7 @@ static void measured_pull_off_is_that_of_the_whole(void **state)
     nt_scene scene = dry_silicon();
     nt_problem problem = {0};
     const nt_demand within = {.relative_accuracy = 0.1}, exact = {.relative_accuracy = 0.0};
-    int yielded = 0;
+    int deformed = 0;
     scene.adhesion.given = NT_ADHESION_GIVEN_PULL_OFF;
     scene.adhesion.contact_potential = 0.5;
     for (double modulus = 1e5; modulus < 1e12; modulus *= 100.0)
@@ -310,9 +310,9 @@ static void measured_pull_off_is_that_of_the_whole(void **state)
             scene.adhesion.pull_off_force = 12e-9;
             assert_int_equal(make(&plan, &scene, shape < 2 ? &within : &exact), NT_OK);
             assert_true(fabs(plan.pull_off_force / 12e-9 - 1.0) < 1e-9);
-            yielded += plan.yield.count > 0;
+            deformed += plan.deformation.count > 0;
         }
-    assert_true(yielded >= 2);
+    assert_true(deformed >= 2);
     scene.tip.shape = NT_SHAPE_PARABOLOID;
     scene.adhesion.pull_off_force = 0.1e-9; /* the potential alone pulls more */
     const nt_plan_inputs inputs = {.scene = &scene};

@@ -25,7 +25,7 @@ static nt_status ask_force(const nt_scene *scene, double accuracy, nt_problem *p
     return ask(scene, (nt_demand){.relative_accuracy = accuracy}, problem);
 }
 
-/* A sample that yields to the brush on it before the tip presses. */
+/* A sample that deforms under the brush on it before the tip presses. */
 static nt_scene brush(double youngs_modulus, double load)
 {
     nt_scene scene = nt_scene_defaults();

@@ -152,7 +152,7 @@ static void keeps_its_bound(void **unused)
         if (nt_plan_make(&plan, &inputs, NULL) != NT_OK)
             continue;
         inputs.demand = &exact;
-        if (nt_plan_make(&other, &inputs, NULL) != NT_OK || plan.yield.count + other.yield.count > 0)
+        if (nt_plan_make(&other, &inputs, NULL) != NT_OK || plan.deformation.count + other.deformation.count > 0)
             continue;
         const int is_on = plan.friction.term.form == NT_FORM_ON;
         *(is_on ? &on : &off) += 1;

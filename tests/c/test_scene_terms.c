@@ -36,7 +36,7 @@ static void make(nt_medium_kind kind)
 {
     nt_scene scene = nt_scene_defaults();
     scene.tip.radius = 1e-4;
-    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13; /* what is looked at here yields to nothing */
+    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13; /* nothing that is looked at here deforms */
     scene.tip.surface_potential = 0.02;
     scene.sample.surface_potential = 0.013;
     scene.sample.charge = 1e-18;
@@ -87,7 +87,7 @@ static void has_words(int term)
         HAS(term, "the words of a form", is_said(words->forms[i].words));
     }
     HAS(term, ".words: has_pressure, as it has a pressure or none", !words->has_pressure == !row->pressure);
-    HAS(term, ".refused, with which a soft sample is refused", !row->pressure || is_said(row->refused.yields));
+    HAS(term, ".refused, with which a soft sample is refused", !row->pressure || is_said(row->refused.deforms));
     HAS(term, ".refused, with which a jump is refused", !row->pressure || is_said(row->refused.jumps));
     for (int other = 0; other < term; other++)
         HAS(term, "a name of its own", strcmp(words->name, nt_term_words_of(other)->name) != 0);

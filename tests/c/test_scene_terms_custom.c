@@ -48,7 +48,7 @@ static nt_scene with(const mixture *m)
 {
     nt_scene scene = nt_scene_defaults();
     scene.medium.relative_humidity = 0.0;
-    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13; /* what is looked at here yields to nothing */
+    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13; /* nothing that is looked at here deforms */
     scene.custom[1] = (nt_custom_term){.name = "gel", .law = mixed, .bound = bound_of_mixed, .context = m};
     return scene;
 }

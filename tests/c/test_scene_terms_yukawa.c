@@ -20,7 +20,7 @@ static nt_scene with(double radius, double energy, double length)
     nt_scene scene = nt_scene_defaults();
     scene.tip.radius = radius;
     scene.medium.relative_humidity = 0.0;
-    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13; /* what is looked at here yields to nothing */
+    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13; /* nothing that is looked at here deforms */
     scene.medium.yukawa_energy = energy;
     scene.medium.yukawa_length = length;
     return scene;

@@ -315,7 +315,7 @@ static void no_pair_leaves_a_force_in_motion(void **state)
 static void there_is_every_form(void **state)
 {
     (void)state;
-    int rubs = 0, dents = 0, yields = 0, local = 0, none = 0, adheres = 0;
+    int rubs = 0, dents = 0, deforms = 0, local = 0, none = 0, adheres = 0;
     for (int i = 0; i < GROUNDS * FORMS; i++) {
         const nt_terrain *terrain = terrains[i / FORMS][i % FORMS];
         if (!terrain)
@@ -323,14 +323,14 @@ static void there_is_every_form(void **state)
         const nt_plan *plan = nt_terrain_plan(terrain);
         rubs += plan->friction.term.form != NT_FORM_OFF;
         dents += plan->dents;
-        yields += plan->yield.count > 0;
+        deforms += plan->deformation.count > 0;
         local += is_local(plan);
         none += plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF;
         adheres += plan->source != NT_ADHESION_NONE;
     }
-    print_message("friction %d, dents %d, yields %d, local %d, no contact %d, adhesion %d\n", rubs, dents, yields,
+    print_message("friction %d, dents %d, deforms %d, local %d, no contact %d, adhesion %d\n", rubs, dents, deforms,
                   local, none, adheres);
-    assert_true(rubs > 5 && dents > 1 && yields > 0 && local > 1 && none > 0 && adheres > 5);
+    assert_true(rubs > 5 && dents > 1 && deforms > 0 && local > 1 && none > 0 && adheres > 5);
 }
 
 int main(void)

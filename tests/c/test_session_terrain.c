@@ -62,7 +62,7 @@ static nt_terrain *made(const nt_terrain_setup *setup)
     return terrain;
 }
 
-/* A rigid sample as it was composed; one that yields has a table for each of some radii. */
+/* A rigid sample as it was composed; one that deforms has a table for each of some radii. */
 static void assert_planned(const nt_plan *plan, double accuracy, double lambda, double bound)
 {
     const double rigid = larger(plan->rigid_error, plan->around_error), found = plan->bound.force_error;

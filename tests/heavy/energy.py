@@ -21,7 +21,7 @@ from nanotouch.errors import InvalidValue
 from random_scenes import PRESETS
 
 TOLERANCE = 1e-8  # of quadrature and of the tables' joins, over the scale
-COARSE = 1e-6  # of quadrature over the cells of a sample that yields; with 24 points in place of 8 it is 2.4e-8
+COARSE = 1e-6  # of quadrature over the cells of a sample that deforms; with 24 points in place of 8 it is 2.4e-8
 CHUNK = 1000  # paths at once
 SURFACE_LAPS = 5000  # over one surface, then another
 
@@ -67,12 +67,12 @@ def main() -> int:
     print(f"{'preset':16} {'paths':12} {'number':>7}  {'most given':>10} {'area - booked':>14} {'most dissipated':>15}")
     for name in options.presets:
         scene, _ = getattr(presets, name)()
-        laps = COARSE if scene.plan().explain()["yields"] else TOLERANCE
+        laps = COARSE if scene.plan().explain()["deforms"] else TOLERANCE
         failed |= report(name, "walks", walks_of(name, options.paths), TOLERANCE)
         failed |= report(name, "laps, curved", laps_of(name, options.paths, "curved"), laps)
         try:
             failed |= report(name, "laps, made", laps_of(name, options.paths // 2, "made"), laps)
-        except InvalidValue as refusal:  # a sample that yields to forces before contact
+        except InvalidValue as refusal:  # a sample that deforms under forces before contact
             print(f"{name:16} laps, made   refused: {refusal}", flush=True)
         failed |= report(name, "laps, flat", laps_of(name, options.paths // 10, "flat"), laps)
         moved, share = cycles.largest_step(scene.plan(), np.random.default_rng(3), options.paths)

@@ -24,7 +24,7 @@ from nanotouch.errors import Error
 def main(first: int = 0, end: int = 1000) -> int:
     """Print what came of the scenes; how many tables were wrong."""
     refused: Counter[str] = Counter()
-    pieces, folds, worst, wrong, yielding = [], [], 0.0, 0, 0
+    pieces, folds, worst, wrong, deforming = [], [], 0.0, 0, 0
     for seed in range(first, end):
         rng = np.random.default_rng(seed)
         scene = (random_scenes.near_preset if seed % 2 else random_scenes.extreme)(rng)
@@ -47,8 +47,10 @@ def main(first: int = 0, end: int = 1000) -> int:
         worst = float(np.maximum(worst, found))
         pieces.append(table.pieces)
         folds.append(table.fold_distance)
-        yielding += plan.explain()["yields"]
-    print(f"{end - first} scenes, {len(pieces)} tables, {yielding} of samples that yield; outside their bound: {wrong}")
+        deforming += plan.explain()["deforms"]
+    print(
+        f"{end - first} scenes, {len(pieces)} tables, {deforming} of samples that deform; outside their bound: {wrong}"
+    )
     print(f"largest error over the bound: {worst:.3g}; pieces: median {np.median(pieces):.0f}, most {max(pieces)}")
     print("fold distance [m]: " + ", ".join(f"{q} %: {np.percentile(folds, q):.2g}" for q in (50, 90, 100)))
     for why, count in refused.most_common():

@@ -67,7 +67,7 @@ def scanned(seed: int, maps: bool = False) -> tuple[nt.Scanner, nt.Scene, nt.Sur
 
     scene = nt.Scene(tip={"radius": between(3e-9, 30e-9)}, sample={"youngs_modulus": between(3e8, 1.5e11)})
     scene.medium.relative_humidity = float(rng.uniform(0.2, 0.7)) if rng.random() < 0.3 else 0.0
-    if maps:  # a soft place of a map may yield to van der Waals' force, which no plan has
+    if maps:  # a soft place of a map may deform under van der Waals' force, which no plan has
         scene.adhesion.hamaker_constant = 0.0
     ground = relief(rng, between(0.2e-6, 1e-6))
     surface = nt.Surface.touched_by(scene, ground, **(made_of(rng, scene, ground.heights.shape) if maps else {}))

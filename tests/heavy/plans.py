@@ -3,7 +3,7 @@
 
 Every second scene is near a preset, every second one extreme (tests/python/random_scenes.py); the quantity is
 drawn, too, and demands are spread evenly over the decades from 1e-6 to 0.3. The truth shares nothing with the library
-(tests/python/oracle.py). Its samples are rigid, so that what a sample might yield, which is a part of most bounds, is
+(tests/python/oracle.py). Its samples are rigid, so that what a sample might deform, which is a part of most bounds, is
 taken out of them first: the rest has to hold alone. A violation prints the seed that makes the scene again. With
 ``--rows FILE`` every row is written there when it is measured, and one that is there already is not measured again.
 """
@@ -44,12 +44,12 @@ class Row(NamedTuple):
     cost: float = 0.0
     exact_cost: float = 0.0
     kept: bool = True  # the bound is inside the demand but for what the plan warns of
-    yields: float = 0.0  # what of the bound is the sample's, which is rigid here
+    deforms: float = 0.0  # what of the bound is the sample's, which is rigid here
 
     @property
     def rest(self) -> float:
         """The bound of a rigid sample; the sum of both has been rounded."""
-        return (self.bound - self.yields) * (1.0 + 1e-12) + 1e-15 * self.bound
+        return (self.bound - self.deforms) * (1.0 + 1e-12) + 1e-15 * self.bound
 
     @property
     def violated(self) -> bool:
@@ -78,14 +78,14 @@ def measure(job: tuple[str, int]) -> Row:
     if isinstance(outcome, Error):
         return Row(surface, seed, quantity, _refused(outcome))
     plan = outcome.plan
-    if plan.explain()["yields"]:
-        return Row(surface, seed, quantity, "yields, which has a sampler of its own")
-    kept, full, yields = random_scenes.keeps(plan, demand), float(plan.explain()["full_cost"]), yields_by(plan)
+    if plan.explain()["deforms"]:
+        return Row(surface, seed, quantity, "deforms, which has a sampler of its own")
+    kept, full, deforms = random_scenes.keeps(plan, demand), float(plan.explain()["full_cost"]), deforms_by(plan)
     held = outcome.folds_hold
-    return Row(surface, seed, quantity, "", outcome.error, plan.bound, demand, held, plan.cost, full, kept, yields)
+    return Row(surface, seed, quantity, "", outcome.error, plan.bound, demand, held, plan.cost, full, kept, deforms)
 
 
-def yields_by(plan: Plan) -> float:
+def deforms_by(plan: Plan) -> float:
     """What the bound has for forces before contact, to which the sample gives way; none beside a contact alone."""
     facts = plan.explain()
     beside = any(term["form"] != "off" for term in facts["terms"][1:])

@@ -48,7 +48,7 @@ def master(seed: int, plan: nt.scene.plan.Plan, seconds: float = 4.0) -> dict[st
 
 
 def sensitivity(seed: int, plan: nt.scene.plan.Plan) -> dict[str, float]:
-    """The slope on a hard sample. Its contact yields by k_c/k_s, k_s = 2 E* a, a^3 = F R/E*."""
+    """The slope on a hard sample. Its contact deforms by k_c/k_s, k_s = 2 E* a, a^3 = F R/E*."""
     rig = nt.Rig(stage={"axes": 1}, probe={"spring_constant": 0.3})
     half = calibrate.simulated(rig, plan, period=PERIOD, seed=seed)
     run = calibrate.drive(half, np.linspace(0.0, 2e-6, 10000), period=PERIOD, turn=200e-9, returns=True)

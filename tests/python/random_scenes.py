@@ -91,7 +91,7 @@ def oracle_of(scene: Scene, plan: Plan) -> Oracle:
         planned = plan.explain()["work_of_adhesion"]
         truth = Oracle(scene, planned)
         truth = Oracle(scene, planned + truth.tail)
-        if not plan.explain()["yields"]:  # else it is that of the yielding sample
+        if not plan.explain()["deforms"]:  # else it is that of the deforming sample
             np.testing.assert_allclose(truth.pull_off(), scene.adhesion.pull_off_force, rtol=1e-8)
     return truth
 
@@ -124,7 +124,7 @@ def largest_error(value: Any, truth: Any, quantity: str, scale: float) -> float:
 
 def keeps(plan: Plan, accuracy: float) -> bool:
     """Its bound is inside the demand; or what the rigid sum errs by is beyond it, is warned of, and the rest is; or the
-    finest table of a sample that yields, which is warned of, errs by less than the rigid sum.
+    finest table of a sample that deforms, which is warned of, errs by less than the rigid sum.
 
     Where the sample jumps there is no bound, and a warning says so.
     """
@@ -133,7 +133,7 @@ def keeps(plan: Plan, accuracy: float) -> bool:
         return any("jumps to the tip" in warning.text for warning in plan.warnings)
     warned = any("more than demanded" in warning.text for warning in plan.warnings)
     rigid = max(facts["rigid_error"], facts["around_error"]) if warned else 0.0
-    if facts["yields"]:
+    if facts["deforms"]:
         return bool(plan.bound <= max(accuracy, rigid))
     return bool(plan.bound <= accuracy + rigid * (1.0 + 1e-12))
 
@@ -144,7 +144,7 @@ def compare(scene: Scene, accuracy: float, quantity: str = "force", count: int =
         plan = scene.plan(accuracy, quantity=quantity)  # type: ignore[arg-type]
     except Error as refusal:
         return refusal
-    if plan.explain()["yields"]:  # has a truth of its own, which is slow: test_yielding, tests/heavy/yielding.py
+    if plan.explain()["deforms"]:  # has a truth of its own, which is slow: test_deformation, tests/heavy/deformation.py
         return Outcome(plan, 0.0, True)
     truth = oracle_of(scene, plan)
     return _compare_at(Place(0.0, 0.0, 0.0, None), plan, truth, gaps_of(plan, scene, count, truth.roots()))

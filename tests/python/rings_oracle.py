@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rigid paraboloid before an elastic half-space that yields to any pressure of the gap, by rings.
+"""A rigid paraboloid before an elastic half-space that deforms under any pressure of the gap, by rings.
 
 The kernel of rings is the complete elliptic integral of Johnson, Contact Mechanics (1985), Sec. 3.8. It is integrated
 over Legendre polynomials on panels with a substitution that takes its logarithm out. No transform of Abel, no adaptive
-mesh, nothing of the library: a second source beside `nanotouch.reference.Yielding`.
+mesh, nothing of the library: a second source beside `nanotouch.reference.Deformation`.
 """
 
 from __future__ import annotations

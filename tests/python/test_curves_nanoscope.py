@@ -291,7 +291,7 @@ def test_mica_in_air(name: str, points: int, count: int) -> None:
     assert [(s.role, len(s)) for s in found[0].segments] == [("approach", points), ("retract", points)]
     assert found[0].meta["placeholders"] == ("spring constant",)
     report = curves.analyse(found[0])
-    # With the sensitivity from the contact slope, mica yields nothing: slope and spring constant agree.
+    # With the sensitivity from the contact slope, mica does not deform: slope and spring constant agree.
     assert report.contact_slope == pytest.approx(0.999, rel=0.05)
     if count == 1:
         assert report.pull_off_force / 0.999 == pytest.approx(36e-9, rel=0.03)

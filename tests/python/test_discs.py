@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plans of samples that yield against discs (`discs_oracle.py`): what a random attack broke, with the cause mended."""
+"""Plans of samples that deform against discs (`discs_oracle.py`): what a random attack broke, with the cause mended."""
 
 from __future__ import annotations
 
@@ -103,10 +103,10 @@ def test_a_tail_takes_its_share_of_w_from_the_stiffness():
     modulus, end = 1 / (0.91 / young + 1 / TIP), DUGDALE * z0
     gaps = np.geomspace(60 * z0, end, 16)
     tail = apart(van_der_waals(hamaker, radius, z0), gaps, radius, modulus, 1200 * z0)[0][-1]
-    still, yielded = (apart(van_der_waals(hamaker, radius, z0), gaps, radius, E, 1200 * z0)[0][-1]
+    still, deformed = (apart(van_der_waals(hamaker, radius, z0), gaps, radius, E, 1200 * z0)[0][-1]
                       for E in (1e6 * modulus, modulus))  # fmt: skip
     at = end + z0
-    tail = -2 / 3 * hamaker * radius**3 / (at * (at + 2 * radius)) ** 2 + yielded - still
+    tail = -2 / 3 * hamaker * radius**3 / (at * (at + 2 * radius)) ** 2 + deformed - still
     m = 1 + np.geomspace(1e-6, 1e3, 4000)
     states = np.array([maugis(radius, modulus, work + tail / (2 * np.pi * radius), end, at) for at in m])
     force, depth = states[:, 1], states[:, 2]

@@ -66,7 +66,7 @@ def test_python_of_the_page_runs(name: str, capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().out
 
 
-@pytest.mark.parametrize("name", ["plan", "scene", "interaction", "yielding", "contact"])
+@pytest.mark.parametrize("name", ["plan", "scene", "interaction", "deformation", "contact"])
 def test_no_sentence_is_longer_than_35_words(name: str) -> None:
     """Of running text and of points of a list; code, tables and headings are none."""
     text = re.sub(r"```.*?```", "", page(name), flags=re.DOTALL)
@@ -108,7 +108,7 @@ def test_costs_are_those_of_the_rows() -> None:
                 plan = scene.plan(relative_accuracy=accuracy)
             except ValueError:  # refused: nothing to compare
                 continue
-            if plan.explain()["yields"]:  # all terms are computed as one
+            if plan.explain()["deforms"]:  # all terms are computed as one
                 continue
             for term in plan.terms:
                 assert told[term.name, term.words] == (term.form, term.cost)
@@ -136,9 +136,9 @@ def test_bound_of_each_quantity_is_the_sum_of_its_terms() -> None:
         plan = Scene(adhesion={"contact_potential": 0.5}).plan(relative_accuracy=0.05, quantity=quantity)
         terms = [*plan.terms, *plan.omitted]
         facts = plan.explain()
-        yielding = facts["rigid_error"] + facts["around_error"]  # what a sample that is taken as rigid would give way
+        deforming = facts["rigid_error"] + facts["around_error"]  # what a sample that is taken as rigid would give way
         total = sum(term.bound for term in terms)
-        assert (1.0 - 1e-12) * total <= plan.bound <= (1.0 + 1e-12) * (total + yielding)
+        assert (1.0 - 1e-12) * total <= plan.bound <= (1.0 + 1e-12) * (total + deforming)
         if quantity in ("radius", "folds"):
             assert [term.name for term in plan.terms] == ["contact"]
 

@@ -102,9 +102,9 @@ def test_the_truth_is_within_sigma() -> None:
 UNTOLD = nt.fit.Model("sokolov_untold", sokolov.force_of, nt.fit.SOKOLOV.parameters, valid="as sokolov")
 
 
-def test_a_cell_that_yields_as_a_whole_is_fitted_too_stiff() -> None:
+def test_a_cell_that_deforms_as_a_whole_is_fitted_too_stiff() -> None:
     """The truth is self-consistent, with that brush: E* of the series comes out above it, as the note says."""
-    sample = reference.Yielding(reference.brush(PRESSURE, THICKNESS), RADIUS, MODULUS, tolerance=1e-5)
+    sample = reference.Deformation(reference.brush(PRESSURE, THICKNESS), RADIUS, MODULUS, tolerance=1e-5)
     gaps = np.linspace(0.49e-6, -0.9e-6, 40)
     forces = np.array([state.force for state in sample.curve(gaps)])
     law = lambda delta: np.interp(delta, -gaps, forces, left=0.0)  # noqa: E731

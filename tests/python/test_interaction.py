@@ -69,7 +69,7 @@ def test_laps_over_bumpy_surfaces(name: str, curved: bool) -> None:
     scene = scene_of(name)
     body = cycles.bumpy(scene, 1)
     body = body if curved else cycles.without_radii(body)
-    # where the sample yields, quadrature feels that k steps a little between the cubics of its table
+    # where the sample deforms, quadrature feels that k steps a little between the cubics of its table
     plan = scene.plan(1e-4 if name == "cell_in_liquid" else 0.01, surface=body)
     if curved and name != "cell_in_liquid":  # without adhesion a sphere has no law with a radius for each place
         assert plan.terms[0].form == "local"
@@ -119,8 +119,8 @@ def test_plans_keep_the_bound_over_topography(seed: int) -> None:
         if isinstance(outcome, Error):
             continue
         if outcome.plan.explain()[
-            "yields"
-        ]:  # which the rigid oracle does not know: tests/python/test_yielding_relief.py
+            "deforms"
+        ]:  # which the rigid oracle does not know: tests/python/test_deformation_relief.py
             continue
         forms.append(outcome.plan.terms[0].form)
         assert outcome.error <= outcome.plan.bound, (index, repr(outcome.plan))
@@ -140,8 +140,8 @@ def test_any_accuracy_over_topography(name: str) -> None:
         plan = outcome.plan
         assert plan.terms[0].form == form
         facts = plan.explain()
-        # the reference is rigid: a plan that yields is off from it by what the rigid sum errs by (test_yielding_relief)
-        assert outcome.error <= plan.bound + facts["yields"] * facts["rigid_error"]
+        # the reference is rigid: where a sample deforms it errs by what the rigid sum does (test_deformation_relief)
+        assert outcome.error <= plan.bound + facts["deforms"] * facts["rigid_error"]
         assert random_scenes.keeps(plan, accuracy)
         # what the rigid sum errs by is no error against it
         rest = plan.bound - max(facts["rigid_error"], facts["around_error"])

@@ -202,13 +202,13 @@ def test_bounds_hold_beside_the_folds(name: str, quantity: str) -> None:
 def test_large_terms_that_cancel_lose_bits() -> None:
     """A cell without adhesion: 77, 113 and 174 nN come to 1 pN, which rounding moves by 9e-12 of the scale of 2 pN."""
     scene = random_scenes.near_preset(np.random.default_rng(5033))
-    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13  # nothing yields, and there is more to lose
+    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13  # nothing deforms, and there is more to lose
     outcome = random_scenes.compare(scene, 1e-6)
     assert not isinstance(outcome, Error)
     assert 1e-12 < outcome.error <= outcome.plan.bound - outcome.plan.explain()["rigid_error"] < 1e-8
 
 
-@pytest.mark.parametrize("name", [name for name in PRESETS if name != "cell_in_liquid"])  # which yields
+@pytest.mark.parametrize("name", [name for name in PRESETS if name != "cell_in_liquid"])  # which deforms
 @pytest.mark.parametrize("force_floor", [1e-12, 1e-10, 1e-8, 1e-6])
 def test_what_cannot_be_felt_is_left_out(name: str, force_floor: float) -> None:
     """With a floor the error is at most the larger of it and the relative share."""

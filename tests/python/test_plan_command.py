@@ -70,7 +70,7 @@ def test_presets_in_words_and_as_data(name: str, capsys: pytest.CaptureFixture[s
     data = ask(capsys, name)
     assert data == as_json(plan.explain())
     assert [term["name"] for term in data["terms"] if term["form"] != "off"] == [term.name for term in plan.terms]
-    rigid = 0.0 if data["yields"] else max(data["rigid_error"], data["around_error"])
+    rigid = 0.0 if data["deforms"] else max(data["rigid_error"], data["around_error"])
     assert sum(term["bound"] for term in data["terms"]) + rigid == pytest.approx(data["bound"], rel=1e-12)
     rubs = data["friction"]["cost"] if data["friction"]["form"] != "off" else 0.0
     assert sum(term["cost"] for term in data["terms"]) + rubs == pytest.approx(data["cost"], rel=1e-12)

@@ -135,7 +135,7 @@ def test_a_shift_beyond_the_folds_own_gaps_is_told_as_not_known() -> None:
     assert "where the folds are is not known" in _plan_text._folds(facts | {"fold_shift": 1.1 * gap})
 
 
-def test_curvature_that_tables_of_a_yielding_sample_follow_is_not_told_as_left_out() -> None:
+def test_curvature_that_tables_of_a_deforming_sample_follow_is_not_told_as_left_out() -> None:
     scene = Scene(
         tip={"radius": 1e-6}, sample={"youngs_modulus": 1e8}, range={"maximum_load": 2e-9},
         medium={"kind": "liquid", "hydration_energy": 1e-4, "hydration_length": 2e-9},
@@ -144,6 +144,6 @@ def test_curvature_that_tables_of_a_yielding_sample_follow_is_not_told_as_left_o
     y, x = np.mgrid[0:24, 0:24] * 50e-9
     heights = 5e-9 * np.sin(x / 190e-9) * np.cos(y / 190e-9)
     plan = scene.plan(0.05, surface=Surface.touched_by(scene, heights, pixel_size=50e-9))
-    assert plan.explain()["yields"]
+    assert plan.explain()["deforms"]
     assert "surface: curved, effective radius" in str(plan)
     assert "left out" not in str(plan).split("surface:")[1].split("\n")[0]

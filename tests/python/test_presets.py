@@ -33,7 +33,7 @@ def test_a_first_touch_warns_of_nothing(name: str) -> None:
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_first_touch_of_its_surface_warns_of_nothing(name: str) -> None:
-    """As `nanotouch touch --scene NAME` does it. About the cell it is told that drag is left out, and that a yielding
+    """As `nanotouch touch --scene NAME` does it. About the cell it is told that drag is left out, and that a deforming
     sample is solved for the radius of the tip alone."""
     scene, rig = getattr(presets, name)()
     session = Session(scene, rig, surface=Surface.touched_by(scene, surfaces.of_scene(name)))
@@ -163,4 +163,4 @@ def test_the_cell_feels_as_fur_over_jelly() -> None:
     for gap, force in ((357e-9, 10e-12), (-3e-9, 0.3e-9), (-232.7e-9, 0.9e-9)):
         assert float(plan.force(gap)) == pytest.approx(force, rel=0.03)
     assert plan.pull_off_force < 1e-14
-    assert "yields to all forces" in str(plan)
+    assert "deforms under all forces" in str(plan)

@@ -56,9 +56,9 @@ def test_displacement_under_hertz_pressure(sphere: ModuleType) -> None:
 
 
 def test_rigid_limit_is_bradley(sphere: ModuleType) -> None:
-    """Without yielding, P is the integral of the wall's law over the paraboloid, -2 at its lowest."""
+    """Without deforming, P is the integral of the wall's law over the paraboloid, -2 at its lowest."""
     gaps = np.array([30.0, 10.0, 3.0, 1.5, 1.2, 1.0, 0.95])
-    loads = [point.P for point in sphere.curve(1e-5, gaps)]  # yields by mu^1.5 = 3e-8
+    loads = [point.P for point in sphere.curve(1e-5, gaps)]  # deforms by mu^1.5 = 3e-8
     assert np.allclose(loads, 2.0 / 3.0 * gaps**-8 - 8.0 / 3.0 * gaps**-2, rtol=0.0, atol=2e-6)  # the mesh ends at 100
 
 

@@ -143,12 +143,12 @@ def registered_exponential(force, length):
 
 
 def test_a_yukawa_force_of_a_long_range(rings):
-    """On a sphere it is less than 2 pi R W by l/R, on a sample that hardly yields, too (Fischbach 2001)."""
+    """On a sphere it is less than 2 pi R W by l/R, on a sample that hardly deforms, too (Fischbach 2001)."""
     radius, length, energy, young = 200e-9, 20e-9, 1e-4, 1e6
     scene = soft(young, 0.0, 1e-9, radius, 3e-11)
     scene.medium.yukawa_energy, scene.medium.yukawa_length = energy, length
     plan = scene.plan(1e-3)
-    assert plan.explain()["yields"]
+    assert plan.explain()["deforms"]
     of_sphere = 1 - length / radius + (1 + length / radius) * np.exp(-2 * radius / length)
     law, stiffness = exponential(energy * of_sphere, length), 1 / (0.75 / young + 1 / TIP)
     states = [rings.state(law, radius, stiffness, length, g) for g in np.array([80, 60, 45, 35]) * 1e-9]
@@ -157,12 +157,12 @@ def test_a_yukawa_force_of_a_long_range(rings):
 
 
 def test_van_der_waals_of_a_sphere_without_adhesion(rings):
-    """A sample that yields feels Hamaker's force of the sphere, which is less than a paraboloid's by some s/R."""
+    """A sample that deforms feels Hamaker's force of the sphere, which is less than a paraboloid's by some s/R."""
     radius, hamaker, z0, young, push = 275e-9, 1.65e-22, 4.2e-10, 3e5, exponential(3.6e-3, 0.6e-9)
     scene = soft(young, 3.6e-3, 0.6e-9, radius, 3e-11)
     scene.adhesion.hamaker_constant, scene.adhesion.equilibrium_distance = hamaker, z0
     plan = scene.plan(1e-2)
-    assert plan.explain()["yields"]
+    assert plan.explain()["deforms"]
 
     def law(g):
         s, strength = g + z0, 2 / 3 * hamaker * radius**2 / (2 * np.pi)

@@ -178,8 +178,8 @@ def test_plans_keep_what_they_are_asked_for(planned: list[plans.Row]) -> None:
     assert len(planned) == 20 * 8
     kept = [row for row in planned if row.forms != plans.REFUSED]
     assert all(
-        not row.error > row.bound and row.bound <= row.relative_accuracy + row.yielding for row in kept
-    )  # NaN: yields
+        not row.error > row.bound and row.bound <= row.relative_accuracy + row.deformation for row in kept
+    )  # NaN: deforms
     assert all(row.cost <= row.full_cost for row in kept)
     for name in {row.preset for row in planned}:
         own = [row for row in kept if row.preset == name and not math.isnan(row.error)]
@@ -188,7 +188,7 @@ def test_plans_keep_what_they_are_asked_for(planned: list[plans.Row]) -> None:
     assert all(row.bound > row.relative_accuracy for row in refused)
     # bounds above rounding are no more than 10 times too cautious, in the median of all steps hardly at all
     first = [step[0] for step in plans.steps(kept) if step[0].error > plans.ROUNDING]
-    tight = [row.error / max(row.bound - row.yielding, row.error) for row in first]
+    tight = [row.error / max(row.bound - row.deformation, row.error) for row in first]
     assert np.min(tight) > 0.1
     assert np.median(tight) > 0.5
 

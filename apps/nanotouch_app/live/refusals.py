@@ -16,7 +16,7 @@ from nanotouch_app.live.sliders import KINDS, OFFERED, Slider
 NUMBER = r"([-+.\deEinfa]+)"
 INACCURATE = re.compile(rf"demand\.relative_accuracy = {NUMBER}\s*: valid is {NUMBER} \.\. ")
 UNSTABLE = re.compile(rf"stability margin \(([^)]*)\) = {NUMBER}: valid is {NUMBER} \.\. ")
-NO_LAW = re.compile(rf"error of (.*), which yields to it .* = {NUMBER}: valid is 0")
+NO_LAW = re.compile(rf"error of (.*), which deforms under it .* = {NUMBER}: valid is 0")
 OTHER = re.compile(r"([a-z]+\.[a-z_]+) = (\S+(?: \S+)?): valid is (.*)$")
 HALVINGS = 20  # of the way to what was asked
 SURE = 0.999  # of what was found is told, so that asking for it works

@@ -6,7 +6,7 @@ import { digits, quantity } from "./units.js";
 const NUMBER = "([-+.\\deEinfa]+)";
 const INACCURATE = new RegExp(`demand\\.relative_accuracy = ${NUMBER}\\s*: valid is ${NUMBER} \\.\\. `);
 const UNSTABLE = new RegExp(`margin.*= ${NUMBER}: valid is ${NUMBER} \\.\\. `);
-const NO_LAW = new RegExp(`error of (.*), which yields to it .* = ${NUMBER}: valid is 0`);
+const NO_LAW = new RegExp(`error of (.*), which deforms under it .* = ${NUMBER}: valid is 0`);
 const OTHER = /([a-z]+\.[a-z_]+) = (\S+(?: \S+)?): valid is (.*)$/;
 const HALVINGS = 20, SURE = 0.999; // of the way to what was asked; of what was found is told, so that asking for it works
 const percent = (share) => Number((100 * Number(share)).toPrecision(2));

@@ -57,7 +57,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["elastic_number"] = plan.elastic_number;
     out["rigid_error"] = plan.rigid_error;
     out["around_error"] = plan.around_error;
-    out["yields"] = plan.yield.count > 0;
+    out["deforms"] = plan.deformation.count > 0;
     out["force_floor"] = plan.demand.force_floor;
     out["probe_noise"] = plan.probe_noise;
     out["lambda"] = plan.lambda;
@@ -78,7 +78,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["least_radius"] = plan.radii ? plan.radii->minimum : plan.contact.radius;
     out["largest_radius"] = plan.radii ? plan.radii->maximum : plan.contact.radius;
     out["curvature_error"] = plan.curvature_error;
-    out["of_each_radius"] = plan.relief.count > 0; /* tables of a sample that yields */
+    out["of_each_radius"] = plan.relief.count > 0; /* tables of a sample that deforms */
     out["properties"] = properties_of(plan);
 }
 

@@ -53,7 +53,7 @@ typedef struct nt_slide {
 } nt_slide;
 
 /* The contact that friction knows at a place (NULL: a flat) and a gap [m]: radius and load inside; 0 without contact.
- * Of a sample that yields without adhesion the load is Hertz' of that radius. */
+ * Of a sample that deforms without adhesion the load is Hertz' of that radius. */
 NT_API NT_REALTIME nt_friction_contact nt_interaction_friction_contact(const nt_plan *plan,
                                                                        const nt_interaction_state *state,
                                                                        const nt_place *place, double gap);

@@ -67,9 +67,9 @@ typedef struct nt_plan_rivals {
 
 enum { NT_PLAN_CELLS = 256 };
 
-/* {U, F, k} of a sample that yields, over the gap: cubics between nodes (docs/yielding.md). */
-enum { NT_YIELD_TABLE = 160 };
-typedef struct nt_yield_node {
+/* {U, F, k} of a sample that deforms, over the gap: cubics between nodes (docs/deformation.md). */
+enum { NT_DEFORM_TABLE = 160 };
+typedef struct nt_deform_node {
     double v;     /* grows inwards: -h, or the root of the distance to where the bodies touch or jump [m, m^(1/2)] */
     double F;     /* [N] */
     double slope; /* dF/dv [N/m, N/m^(1/2)] */
@@ -77,9 +77,9 @@ typedef struct nt_yield_node {
     double U;     /* [J] */
     double a;     /* radius of contact [m] */
     double peak;  /* the largest pressure on the sample, under the apex [Pa] */
-} nt_yield_node;
-typedef struct nt_yield_table {
-    int count;         /* of nodes; 0: the sample does not yield */
+} nt_deform_node;
+typedef struct nt_deform_table {
+    int count;         /* of nodes; 0: the sample does not deform */
     int apart;         /* of them before contact; those after it are of contact */
     int jumps;         /* 1: apart ends in a jump */
     double touch;      /* h where the bodies touch or jump; -inf: never [m] */
@@ -94,19 +94,19 @@ typedef struct nt_yield_table {
     double ratio;      /* of the effective radius it is of to the tip's own [-] */
     int layered;       /* 1: of a layer bonded to rigid ground */
     double share;      /* of w, what the tail pulls in contact that the surface does not jump into [J/m^2] */
-    nt_yield_node node[NT_YIELD_TABLE];
-} nt_yield_table;
+    nt_deform_node node[NT_DEFORM_TABLE];
+} nt_deform_table;
 
 /* The same over a surface: a table for each of some effective radii, evenly over their logarithm. Places between them
  * have a cubic of four tables, so that U(h, R) is one potential with continuous slopes. */
-enum { NT_YIELD_RADII = 25 };
-typedef struct nt_yield_relief {
-    int count;            /* of tables; 0: one radius is that of all places */
-    double first;         /* the least of those radii [m] */
-    double step;          /* of their logarithm [-] */
-    nt_yield_table *room; /* borrowed, for NT_YIELD_RADII tables; NULL: none */
-    const nt_yield_table *table[NT_YIELD_RADII];
-} nt_yield_relief;
+enum { NT_DEFORM_RADII = 25 };
+typedef struct nt_deform_relief {
+    int count;             /* of tables; 0: one radius is that of all places */
+    double first;          /* the least of those radii [m] */
+    double step;           /* of their logarithm [-] */
+    nt_deform_table *room; /* borrowed, for NT_DEFORM_RADII tables; NULL: none */
+    const nt_deform_table *table[NT_DEFORM_RADII];
+} nt_deform_relief;
 
 /* Friction: no potential of the gap but a history in the plane (nt_interaction_slide), so that the vertical force has
  * the same bits with it and without. */
@@ -177,8 +177,8 @@ typedef struct nt_plan {
     double tail;                     /* what the tails pull of w at each place (E5b) [J/m^2] */
     int corner;                      /* while it is made: NT_CORNER_* of the surface at which `contact` is */
     double ratio;                    /* while it is made: the effective radius it is made for, over the tip's own [-] */
-    nt_yield_table yield;            /* of a sample that yields to forces beside contact, at the tip's own radius */
-    nt_yield_relief relief;          /* and at the radius of each place */
+    nt_deform_table deformation;     /* of a sample that deforms under forces beside contact, at the tip's own radius */
+    nt_deform_relief relief;         /* and at the radius of each place */
     double elastic_number;           /* e of the terms beside contact, the largest in the range [-] */
     double rigid_error;              /* of adding them on the undeformed gap, in the norm of the demand [-] */
     double around_error;             /* of the same around an adhesive contact, but for tails [-] */
@@ -195,8 +195,8 @@ typedef struct nt_plan_inputs {
     const nt_maugis_bank *bank; /* for adhesive contact with the radius of each place, borrowed; NULL: exact only */
     const nt_properties *properties; /* of that surface, borrowed; NULL: those of the scene everywhere. They stand in
                                         place of sample.youngs_modulus and of all that gives w */
-    nt_yield_table *room; /* for NT_YIELD_RADII tables of a sample that yields over those radii, borrowed for the life
-                             of the plan; NULL: such a sample has the tip's own radius everywhere, or is refused */
+    nt_deform_table *room; /* for NT_DEFORM_RADII tables of a sample that deforms over those radii, borrowed for the
+                             life of the plan; NULL: such a sample has the tip's own radius everywhere, or is refused */
 } nt_plan_inputs;
 
 /* Corners of what a surface goes through; together they are a number. */

@@ -112,7 +112,7 @@ typedef struct nt_plan_laws {
     FORM(EXACT, "exact", "contact by Maugis-Dugdale, solved")                                                          \
     FORM(LOCAL, "local", "contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda")  \
     FORM(LOCAL_EXACT, "local exact", "the same by the exact solver")                                                   \
-    FORM(YIELDING, "yielding", "contact and all beside it, gap and displacement solved together")
+    FORM(DEFORMED, "deformed", "contact and all beside it, gap and displacement solved together")
 
 #define NT_FORM_NUMBER(ID, name, what) NT_FORM_##ID,
 typedef enum nt_form { NT_FORMS(NT_FORM_NUMBER) } nt_form;

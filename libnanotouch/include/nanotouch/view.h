@@ -54,7 +54,7 @@ typedef struct nt_view_contact {
     double radius;          /* effective radius R of a sphere or paraboloid there [m] */
     double modulus;         /* E* [Pa] */
     double gap;             /* h of the undeformed bodies [m] */
-    double indentation;     /* delta that contact and zone deform the bodies with; of a sample that yields to forces
+    double indentation;     /* delta that contact and zone deform the bodies with; of a sample that deforms under forces
                                beside contact that of their sum, so that the surfaces stay apart [m] */
     double contact_radius;  /* a [m] */
     double cohesive_radius; /* c, where the adhesive zone ends; a where it has no width [m] */

@@ -28,7 +28,7 @@ enum {
     JKR,
     TABLE,
     POLISHED,
-    YIELDING,
+    DEFORMED,
     LOCAL_EXACT,
     FORMS
 };
@@ -50,7 +50,7 @@ static const nt_term_form forms[FORMS] = {
     [JKR] = {NT_FORM_JKR, 1.5, 2.4, "JKR"},
     [TABLE] = {NT_FORM_TABLE, 1.85, 1.75, "Maugis-Dugdale table"},
     [POLISHED] = {NT_FORM_POLISHED, 6.7, 5.9, "Maugis-Dugdale, polished table"},
-    [YIELDING] = {NT_FORM_YIELDING, 2.45, 2.5, "on a sample that yields to all forces together"},
+    [DEFORMED] = {NT_FORM_DEFORMED, 2.45, 2.5, "on a sample that deforms under all forces together"},
     [LOCAL_EXACT] = {NT_FORM_LOCAL_EXACT, 68.0, 59.0, "Maugis-Dugdale, exact, with the radius of each place"},
 };
 
@@ -82,8 +82,8 @@ static int row_of(const nt_plan *plan, nt_form form)
         return TABLE;
     case NT_FORM_POLISHED:
         return POLISHED;
-    case NT_FORM_YIELDING:
-        return YIELDING;
+    case NT_FORM_DEFORMED:
+        return DEFORMED;
     case NT_FORM_LOCAL_EXACT:
         return LOCAL_EXACT;
     case NT_FORM_EXACT: /* the truth that others are measured by, never computed itself */

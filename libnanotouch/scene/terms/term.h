@@ -21,13 +21,13 @@ typedef struct nt_term_fact {
 } nt_term_fact;
 enum { NT_TERM_FACTS_MAX = 4 };
 
-/* What a plan says that is refused because the sample yields to a law, or jumps to its pull. */
+/* What a plan says that is refused because the sample deforms under a law, or jumps to its pull. */
 typedef struct nt_term_refused {
-    const char *yields, *jumps;
+    const char *deforms, *jumps;
 } nt_term_refused;
 
 #define NT_TERM_REFUSED(law)                                                                                           \
-    {"sample.youngs_modulus: the sample is so soft that it yields to " law                                             \
+    {"sample.youngs_modulus: the sample is so soft that it deforms under " law                                         \
      ", which cannot be planned here (stiffen it, weaken the law, or demand less)",                                    \
      "range.minimum_gap (nearer this soft sample jumps to the tip, pulled by " law                                     \
      ", and without adhesion what follows is not planned; give the attraction as adhesion.work_of_adhesion)"}
@@ -53,7 +53,8 @@ typedef struct nt_term_row {
     /* Two flats (terms.h), where words.has_pressure. */
     nt_pressure (*pressure)(const void *law, double gap);
 
-    /* What a plan says that is refused because the sample yields to it: NT_TERM_REFUSED, by a law with a pressure. */
+    /* What a plan says that is refused because the sample deforms under it: NT_TERM_REFUSED, by a law with a pressure.
+     */
     nt_term_refused refused;
 
     /* --- Each of these may be NULL --- */

@@ -52,7 +52,7 @@ static double hold(const void *law)
     return ((const nt_yukawa_term *)law)->minimum_gap;
 }
 
-/* Of flats that by Derjaguin's relation make the force of the sphere: a sample that hardly yields feels that. */
+/* Of flats that by Derjaguin's relation make the force of the sphere: a sample that hardly deforms feels that. */
 static nt_pressure pressure(const void *law, double gap)
 {
     const nt_yukawa_term *yukawa = law;

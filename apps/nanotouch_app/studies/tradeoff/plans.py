@@ -34,7 +34,7 @@ class Row(NamedTuple):
     full_cost: float
     """of everything on, exact"""
     bound: float
-    yielding: float
+    deformation: float
     """its part for a sample that is taken as rigid, which the reference takes as rigid, too"""
     error: float
     """largest |dF|/max(|F|, scale) against the reference, away from folds"""
@@ -63,12 +63,12 @@ def _rows(name: str, scene: Scene, accuracies: tuple[float, ...]) -> Iterator[Ro
             yield Row(name, accuracy, math.nan, exact.cost, exact.bound, 0.0, math.nan, REFUSED)
             continue
         facts = plan.explain()
-        yields = facts["yields"]  # measured by tests/heavy/yielding.py: its truth is slow
+        deforms = facts["deforms"]  # measured by tests/heavy/deformation.py: its truth is slow
         error = (
-            math.nan if yields else max(_error(plan, path, truth[history], history) for history, path in paths.items())
+            math.nan if deforms else max(_error(plan, path, truth[history], history) for history, path in paths.items())
         )
         forms = ", ".join(f"{term.name.replace('_', ' ')} {term.form}" for term in plan.terms)
-        forms += ", the sample yields" if yields and "yielding" not in forms else ""
+        forms += ", the sample deforms" if deforms and "deformed" not in forms else ""
         rigid = facts["rigid_error"] + facts["around_error"]
         yield Row(name, accuracy, plan.cost, exact.cost, plan.bound, rigid, error, forms)
 

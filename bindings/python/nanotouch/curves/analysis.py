@@ -96,7 +96,7 @@ def analyse(curve: ForceCurve, *, baseline: Kind = "auto", drag: tuple[float, fl
 
 
 def sensitivity(curve: ForceCurve) -> tuple[float, float]:
-    """Deflection sensitivity from a contact that does not yield, where the tip follows the base.
+    """Deflection sensitivity from a contact that does not deform, where the tip follows the base.
 
     Returns
     -------

@@ -37,7 +37,7 @@ class CurveReport:
         What tears off on the retraction, from the sample outwards.
     contact_slope : float
         -dF/dz in hard contact (upper half of the load) [N/m]: at most the spring constant, and equal to it on a sample
-        that does not yield.
+        that does not deform.
     contact_stiffness : float
         k = k_c s/(k_c - s) of the contact itself, with s the contact slope [N/m]; NaN where s is not below k_c.
     adhesion_work : float

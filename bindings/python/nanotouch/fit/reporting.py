@@ -36,7 +36,7 @@ class Sample:
     tip: Any
 
     def youngs_modulus(self, modulus: float, notes: list[str], assumptions: list[str]) -> tuple[float, float, float]:
-        """E from 1/E* = (1 - nu^2)/E + (1 - nu_t^2)/E_t [Pa], and d ln E/d ln E*, dE/dnu; NaN if the tip yields all."""
+        """E from 1/E* = (1 - nu^2)/E + (1 - nu_t^2)/E_t [Pa], d ln E/d ln E* and dE/dnu; NaN if the tip is all of it."""
         ratio = self.poisson_ratio
         if ratio is None or not -1.0 < ratio <= 0.5:
             raise InvalidValue(f"poisson_ratio {ratio}: valid is above -1, up to 0.5")
@@ -53,7 +53,7 @@ class Sample:
         return (1.0 - ratio**2) / compliance, 1.0 / (modulus * compliance), -2.0 * ratio / compliance
 
     def with_bounds(self, bounds: dict[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
-        """With those of E from those of E* [Pa]; infinite where the tip yields all."""
+        """With those of E from those of E* [Pa]; infinite where all of it is the tip's."""
         if "effective_modulus" not in bounds:
             return bounds
         ends = bounds["effective_modulus"]

@@ -50,7 +50,7 @@ class SeriesBias(NamedTuple):
         return (
             f"springs in series err: at {self.force * 1e9:.3g} nN this sample gives by {self.series * 1e9:.4g} nm in "
             f"series, by {self.self_consistent * 1e9:.4g} nm where gap and displacement are solved together; so E* is "
-            f"some {self.modulus:.2g} times too high (docs/yielding.md)"
+            f"some {self.modulus:.2g} times too high (docs/deformation.md)"
         )
 
 
@@ -81,7 +81,7 @@ _LEFT = np.exp(-4.0 * _TABLE)
 
 
 def series_bias(force: float, radius: float, effective_modulus: float, thickness: float, pressure: float) -> SeriesBias:
-    """What springs in series err by at a force [N], against :class:`nanotouch.reference.Yielding` with the same brush.
+    """What springs in series err by at a force [N], against :class:`~nanotouch.reference.Deformation` with that brush.
 
     Tip of `radius` [m]; E* [Pa]; brush of `thickness` T [m] and `pressure` kT/s^3 [Pa].
     """
@@ -92,7 +92,7 @@ def series_bias(force: float, radius: float, effective_modulus: float, thickness
                               ("pressure", pressure, "Pa")):  # fmt: skip
         check_between(name, value, unit, above=0.0)
     law = reference.brush(pressure, thickness)
-    sample = reference.Yielding(law, radius, effective_modulus, tolerance=1e-5)
+    sample = reference.Deformation(law, radius, effective_modulus, tolerance=1e-5)
     gaps = thickness * np.linspace(1e-3, 1.0, 20001) ** 4
     rigid = float(np.interp(-force, -2.0 * math.pi * radius * law.energy(gaps), gaps))
     series = float(np.cbrt(9.0 * force**2 / (16.0 * effective_modulus**2 * radius)))

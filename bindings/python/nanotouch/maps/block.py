@@ -152,7 +152,7 @@ def _uncertainties(
 
 
 def _sample_modulus(settings: Settings, columns: Columns) -> Columns:
-    """E of the sample from 1/E* = (1 - nu^2)/E + (1 - nu_t^2)/E_t [Pa]; NaN where the tip yields all."""
+    """E of the sample from 1/E* = (1 - nu^2)/E + (1 - nu_t^2)/E_t [Pa]; NaN where all of it is the tip's."""
     assert settings.poisson_ratio is not None
     tip = 0.0
     if settings.tip_modulus is not None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The force of a scene with adhesion whose sample yields to the tail of that adhesion: apart by
-:class:`nanotouch.reference.Yielding`, from far away to the fold of the tail; in contact Maugis-Dugdale. It shares no
+"""The force of a scene with adhesion whose sample deforms under the tail of that adhesion: apart by
+:class:`nanotouch.reference.Deformation`, from far away to the fold of the tail; in contact Maugis-Dugdale. It shares no
 code with plans.
 
 Where the tail jumps before adhesion takes hold, contact has all of w and no tail. Where it does not, the force goes on
@@ -22,11 +22,11 @@ from numpy.typing import ArrayLike
 from nanotouch import contact as contacts
 from nanotouch import forces as laws
 from nanotouch._arrays import Floats, as_floats
+from nanotouch.reference._deformation import Deformation, Deformed
 from nanotouch.reference._pressures import Pressure
 from nanotouch.reference._scene import History, _capture_gap, _contact, _has_meniscus, _less, _potential, _touch, _work
 from nanotouch.reference._soft_scene import _laws, _modulus
 from nanotouch.reference._surrounded import Surrounded
-from nanotouch.reference._yielding import Yielded, Yielding
 from nanotouch.scene import Scene
 
 _CLOSE = 1e-12
@@ -38,7 +38,7 @@ _FAR = 60.0
 
 
 @dataclass
-class YieldedScene:
+class DeformedScene:
     """A scene with adhesion, its branches and its folds."""
 
     scene: Scene
@@ -48,7 +48,7 @@ class YieldedScene:
     """by a fold of the tail"""
     contact: contacts.Contact
     """that acts then"""
-    apart: Yielding
+    apart: Deformation
     shift: float
     """of the gap to the poles of the tail [m]"""
     kept: float
@@ -76,7 +76,7 @@ class YieldedScene:
         return self.apart.at(gap + self.shift).force
 
 
-def yielded_scene(scene: Scene, tolerance: float = 1e-6) -> YieldedScene:
+def deformed_scene(scene: Scene, tolerance: float = 1e-6) -> DeformedScene:
     """Finds where the surface jumps, from far away inwards."""
     whole = _contact(scene, _work(scene))
     range_of_adhesion = _capture_gap(scene, whole)
@@ -84,23 +84,23 @@ def yielded_scene(scene: Scene, tolerance: float = 1e-6) -> YieldedScene:
     modulus, _ = _modulus(scene)
     law = _pressure(scene, shift)
 
-    def apart() -> Yielding:
-        return Yielding(law, scene.tip.radius, modulus, tolerance=tolerance)
+    def apart() -> Deformation:
+        return Deformation(law, scene.tip.radius, modulus, tolerance=tolerance)
 
     if _beside(scene):
         return _surrounded_scene(scene, whole, apart, shift)
     jump = _jump(apart(), shift, range_of_adhesion, scene)
     if jump is not None:
-        return YieldedScene(scene, jump.gap - shift, True, whole, apart(), shift, 0.0)
+        return DeformedScene(scene, jump.gap - shift, True, whole, apart(), shift, 0.0)
     kept = apart().at(range_of_adhesion + shift).force
     tail = kept - float(_others(scene, np.array([range_of_adhesion]))[0])
     left = _less(whole, -tail / (2.0 * np.pi * whole.radius))
-    return YieldedScene(scene, range_of_adhesion, False, left, apart(), shift, tail)
+    return DeformedScene(scene, range_of_adhesion, False, left, apart(), shift, tail)
 
 
 def _surrounded_scene(
-    scene: Scene, whole: contacts.Contact, apart: Callable[[], Yielding], shift: float
-) -> YieldedScene:
+    scene: Scene, whole: contacts.Contact, apart: Callable[[], Deformation], shift: float
+) -> DeformedScene:
     """Contact and the laws around it, as one."""
     assert whole.cohesive_stress is not None
     end_gap, per_area = whole.work_of_adhesion / whole.cohesive_stress, 2.0 * np.pi * scene.tip.radius
@@ -117,10 +117,10 @@ def _surrounded_scene(
     jkr = (4.5 * np.pi * whole.work_of_adhesion * whole.radius**2 / whole.effective_modulus) ** (1.0 / 3.0)  # no load
     around.find_release(0.6 * jkr)
     captured = _centre_capture(apart(), end_gap + shift)
-    return YieldedScene(scene, captured - shift, True, whole, apart(), shift, 0.0, around)
+    return DeformedScene(scene, captured - shift, True, whole, apart(), shift, 0.0, around)
 
 
-def _centre_capture(sample: Yielding, end_gap: float) -> float:
+def _centre_capture(sample: Deformation, end_gap: float) -> float:
     """Coming from far away: where the gap of adhesion is left under the apex, or where the surface jumps before."""
     last = _FAR * max(end_gap, 1e-9)
     here = sample.at_centre(last)
@@ -132,7 +132,7 @@ def _centre_capture(sample: Yielding, end_gap: float) -> float:
     return here.gap
 
 
-def _jump(sample: Yielding, shift: float, nearest: float, scene: Scene) -> Yielded | None:
+def _jump(sample: Deformation, shift: float, nearest: float, scene: Scene) -> Deformed | None:
     """The fold, where it lies farther out than `nearest` [m]."""
     last = _FAR * max(nearest + shift, 1e-9)
     before = here = sample.at_centre(last)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sphere on an elastic half-space under the Lennard-Jones law, self-consistent: the surface yields to the very
+"""A sphere on an elastic half-space under the Lennard-Jones law, self-consistent: the surface deforms under the very
 attraction that its shape decides. Its curves depend on Tabor's mu alone and are shipped as a table made by
 ``tools/lennard_jones``.
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The force of a scene without adhesion whose sample yields, composed from the laws of :mod:`nanotouch.forces` and
-solved by :class:`nanotouch.reference.Yielding`; it shares no code with plans."""
+"""The force of a scene without adhesion whose sample deforms, composed from the laws of :mod:`nanotouch.forces` and
+solved by :class:`nanotouch.reference.Deformation`; it shares no code with plans."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from numpy.typing import ArrayLike
 
 from nanotouch import forces as laws
 from nanotouch._arrays import Floats, LawValue, as_floats
+from nanotouch.reference._deformation import Deformation, Deformed
 from nanotouch.reference._half_space import Layer
 from nanotouch.reference._pressures import Pressure
-from nanotouch.reference._yielding import Yielded, Yielding
 from nanotouch.scene import Scene
 
 _CLOSE = 1e-12
 """a minimum gap that is none [m]"""
 
 
-def yielded_force(scene: Scene, gap: ArrayLike) -> Floats:
-    """Force on the tip [N] at gaps [m] in falling order; see :func:`yielded`."""
-    return np.array([here.force for here in yielded(scene, gap)[0]])
+def deformed_force(scene: Scene, gap: ArrayLike) -> Floats:
+    """Force on the tip [N] at gaps [m] in falling order; see :func:`deformed`."""
+    return np.array([here.force for here in deformed(scene, gap)[0]])
 
 
-def yielded(scene: Scene, gap: ArrayLike) -> tuple[list[Yielded], float | None]:
+def deformed(scene: Scene, gap: ArrayLike) -> tuple[list[Deformed], float | None]:
     """The equilibria at gaps [m] in falling order: van der Waals, double layer, hydration and brush, in contact Hertz
     with them. Bodies touch at the interatomic distance; between there and gap 0 the force stays. And the gap at which
     contact begins, if it was reached [m]."""
@@ -41,12 +41,12 @@ def yielded(scene: Scene, gap: ArrayLike) -> tuple[list[Yielded], float | None]:
     return found, sample.touch
 
 
-def _sample(scene: Scene) -> Yielding:
+def _sample(scene: Scene) -> Deformation:
     law = _pressure(scene, scene.adhesion.equilibrium_distance)
     modulus, share = _modulus(scene)
     thickness = scene.sample.thickness
     layer = Layer(thickness, scene.sample.poisson_ratio, share) if thickness > 0.0 else None
-    return Yielding(law, scene.tip.radius, modulus, layer, tolerance=1e-6)
+    return Deformation(law, scene.tip.radius, modulus, layer, tolerance=1e-6)
 
 
 def _modulus(scene: Scene) -> tuple[float, float]:

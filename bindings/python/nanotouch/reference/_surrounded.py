@@ -14,9 +14,9 @@ import numpy as np
 
 from nanotouch._arrays import Floats
 from nanotouch.errors import SolverError
+from nanotouch.reference._deformation import WIDEST
 from nanotouch.reference._half_space import NODES, Mesh
 from nanotouch.reference._pressures import Pressure
-from nanotouch.reference._yielding import WIDEST
 
 _FADED = 1e-8  # of the energy: the mesh goes so far
 _OCTAVES = 1.25  # from panel to panel

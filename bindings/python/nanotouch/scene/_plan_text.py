@@ -25,7 +25,7 @@ def text_of(facts: dict[str, Any]) -> str:
     lines = [_contact(contact, facts)]
     lines += [_term(term, facts) for term in others if term.force > 0.0]
     lines += _friction(Term(*facts["friction"]))
-    lines += _yielding(facts)
+    lines += _deformation(facts)
     if facts["curvature_error"] > 0.0:
         lines.append(_surface(contact, facts))
     lines += _properties(facts)
@@ -47,7 +47,7 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
         return "contact: none within the range of gaps"
     if facts["adhesion_source"] == "none":
         felt = " that could be felt" if math.isfinite(facts["lambda"]) else ""
-        apart = term.form not in ("shape", "local", "yielding") and facts["quantity"] != "folds"
+        apart = term.form not in ("shape", "local", "deformed") and facts["quantity"] != "folds"
         within = f", within {_percent(term.bound)}" if apart else ""
         return f"contact: {law}{within}, no adhesion{felt}"
     text = f"contact: {law}"
@@ -74,17 +74,17 @@ def _friction(term: Term) -> list[str]:
     return [f"friction: {term.words}, {largest}, {bound}"]
 
 
-def _yielding(facts: dict[str, Any]) -> list[str]:
+def _deformation(facts: dict[str, Any]) -> list[str]:
     """How far the sample gives to forces before contact, where that is felt."""
     size = f"elastic number {in_words(facts['elastic_number'], '', 2)}"
     rigid = max(facts["rigid_error"], facts["around_error"])
     error = "would jump" if math.isinf(rigid) else f"could err by {_percent(rigid)}"
-    if facts["yields"]:
-        return [f"sample: yields to all forces together, {size}; laws that add on the undeformed gap {error}"]
+    if facts["deforms"]:
+        return [f"sample: deforms under all forces together, {size}; laws that add on the undeformed gap {error}"]
     if facts["rigid_error"] == 0.0 or facts["adhesion_source"] != "none":
         return []
     return [
-        f"sample: does not yield before contact, {size}; forces add on the undeformed gap, which errs by "
+        f"sample: does not deform before contact, {size}; forces add on the undeformed gap, which errs by "
         f"{_percent(facts['rigid_error'])}"
     ]
 

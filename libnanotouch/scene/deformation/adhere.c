@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A sample that yields to the tail of its own adhesion (docs/yielding.md).
+ * A sample that deforms under the tail of its own adhesion (docs/deformation.md).
  *
  * Apart, the surface bulges towards the tip: a table that runs to the tail's own fold, where the surface jumps. In
  * contact Maugis-Dugdale has all of w, and no tail acts beside it: what w holds is not counted again. Where the tail
@@ -10,8 +10,8 @@
  * fold it is counted from there, so that no jump gives out energy. */
 #include <math.h>
 
+#include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
-#include "scene/yielding/yield.h"
 
 #define INSIDE 0.01   /* of what a cycle can lose: at least so much is lost at either jump */
 #define FELT 0.2      /* of the demand: what laws around a contact err by on the undeformed gap */
@@ -26,7 +26,7 @@ static double energy_of_contact(const nt_plan *plan, double gap)
 /* Contact after the jump lies below it, and above what it falls to when it lets go; NT_E_RANGE where it cannot. */
 static nt_status count_from_fold(nt_plan *plan)
 {
-    nt_yield_table *table = &plan->yield;
+    nt_deform_table *table = &plan->deformation;
     table->offset = 0.0;
     if (!table->jumps)
         return NT_OK;
@@ -63,40 +63,40 @@ int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene)
 
 /* Laws act from where adhesion ends, there as at the interatomic distance: inside they keep their force. Adhesion has
  * all of w, also what a tail on rigid bodies would take of it. */
-nt_status nt_plan_yield_hold(nt_plan *plan, const nt_scene *scene, const nt_yield_range *range)
+nt_status nt_plan_deform_hold(nt_plan *plan, const nt_scene *scene, const nt_deform_range *range)
 {
     const nt_contact *contact = &plan->contact;
     const double radius = plan->maugis.folds.zero_load_radius * plan->maugis.radius_scale;
     const double h0 = contact->work_of_adhesion / contact->cohesive_stress;
-    const nt_yield_terms in = {plan, scene->adhesion.equilibrium_distance - h0, 1};
-    nt_yield_sample sample = nt_yield_sample_of(&in, scene, range->farthest);
-    nt_yield_range held = *range;
+    const nt_deform_terms in = {plan, scene->adhesion.equilibrium_distance - h0, 1};
+    nt_deform_sample sample = nt_deform_sample_of(&in, scene, range->farthest);
+    nt_deform_range held = *range;
     sample.stress = (contact->work_of_adhesion + plan->tail) / h0;
     sample.range = h0;
     held.nearest = -INFINITY;
-    return nt_yield_table_hold(&plan->yield, &sample, &held, radius);
+    return nt_deform_table_hold(&plan->deformation, &sample, &held, radius);
 }
 
 void nt_plan_hold_facts(nt_plan *plan, double maximum_load)
 {
-    const nt_yield_table *table = &plan->yield;
+    const nt_deform_table *table = &plan->deformation;
     double low = table->release, high = table->last;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        *(nt_yield_table_held(table, middle).F < maximum_load ? &low : &high) = middle;
+        *(nt_deform_table_held(table, middle).F < maximum_load ? &low : &high) = middle;
     }
     plan->release_gap = table->release;
     plan->largest_indentation = -high;
-    plan->maximum_stiffness = nt_yield_table_held(table, high).k;
+    plan->maximum_stiffness = nt_deform_table_held(table, high).k;
 }
 
 /* Contact and all around it are one table. */
 static void take_contact(const nt_plan *plan, nt_plan_options *options, double error)
 {
     options->count[NT_PLAN_CONTACT] = 0;
-    nt_plan_offer(plan, options, NT_PLAN_CONTACT, NT_FORM_YIELDING, error);
-    options->option[NT_PLAN_CONTACT][0].cost += nt_plan_cost_of_place(plan, NT_FORM_YIELDING, 0);
-    options->option[NT_PLAN_CONTACT][0].latency += nt_plan_cost_of_place(plan, NT_FORM_YIELDING, 1);
+    nt_plan_offer(plan, options, NT_PLAN_CONTACT, NT_FORM_DEFORMED, error);
+    options->option[NT_PLAN_CONTACT][0].cost += nt_plan_cost_of_place(plan, NT_FORM_DEFORMED, 0);
+    options->option[NT_PLAN_CONTACT][0].latency += nt_plan_cost_of_place(plan, NT_FORM_DEFORMED, 1);
 }
 
 /* What the table of all beside it adds to an evaluation in contact [Hertz evaluations] (tests/bench/bench_plan.c). */
@@ -136,19 +136,19 @@ static void drop_others(const nt_plan *plan, nt_plan_options *options, double er
 /* A tail that pulls almost all of w leaves no contact. */
 static int is_left(const nt_plan *plan)
 {
-    return nt_plan_yield_share(plan) <= STRONGEST * plan->contact.work_of_adhesion;
+    return nt_plan_deform_share(plan) <= STRONGEST * plan->contact.work_of_adhesion;
 }
 
-nt_status nt_plan_yield_contact(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
+nt_status nt_plan_deform_contact(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
 {
     if (!is_left(plan) || nt_plan_laws_at(plan, scene, work_of_adhesion, NULL) != NT_OK)
         return NT_E_RANGE;
-    plan->terms[NT_PLAN_CONTACT].form = plan->yield.holds ? NT_FORM_YIELDING : NT_FORM_POLISHED;
-    plan->yield.share = nt_plan_yield_share(plan);
+    plan->terms[NT_PLAN_CONTACT].form = plan->deformation.holds ? NT_FORM_DEFORMED : NT_FORM_POLISHED;
+    plan->deformation.share = nt_plan_deform_share(plan);
     return count_from_fold(plan);
 }
 
-nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
+nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
 {
     nt_plan_options options;
     if (!is_left(plan))
@@ -158,7 +158,7 @@ nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double erro
         return NT_E_RANGE;
     nt_plan_options_of(plan, scene, &options);
     drop_others(plan, &options, error);
-    if (plan->yield.holds)
+    if (plan->deformation.holds)
         take_contact(plan, &options, error);
     status = nt_plan_choose(plan, &options, problem);
     if (status == NT_OK)

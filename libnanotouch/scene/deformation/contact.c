@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/yielding/yield.h"
+#include "scene/deformation/deform.h"
 
-enum { N = NT_YIELD_ORDER, OUTER = NT_YIELD_PANELS - 3, MOST_MESHES = 800 };
+enum { N = NT_DEFORM_ORDER, OUTER = NT_DEFORM_PANELS - 3, MOST_MESHES = 800 };
 enum { NEWTONS = 40, EDGES = 60, KINKS = 8, SECANTS = 8 };
 
 #define FADED 1e-7    /* of the energy where adhesion ends: the mesh goes so far */
@@ -27,7 +27,7 @@ enum { NEWTONS = 40, EDGES = 60, KINKS = 8, SECANTS = 8 };
 #define NUDGE 3e-4    /* of the end of adhesion, for its slope */
 
 /* How far the law reaches outside adhesion [m]. */
-static double reach_of(const nt_yield_sample *sample)
+static double reach_of(const nt_deform_sample *sample)
 {
     const double W = fabs(sample->law(sample->context, sample->range).energy);
     double rise = fmax(sample->length, sample->range);
@@ -36,7 +36,7 @@ static double reach_of(const nt_yield_sample *sample)
     return rise;
 }
 
-static void put_kink(nt_yield_edges *list, double x)
+static void put_kink(nt_deform_edges *list, double x)
 {
     for (int i = 2; i < list->count; ++i) {
         if (list->at[i] < x)
@@ -46,7 +46,7 @@ static void put_kink(nt_yield_edges *list, double x)
             list->at[i] = x;
         } else if (i > 2 && x - list->at[i - 1] < NEARBY * width) {
             list->at[i - 1] = x;
-        } else if (list->count <= NT_YIELD_PANELS) {
+        } else if (list->count <= NT_DEFORM_PANELS) {
             for (int j = list->count++; j > i; --j)
                 list->at[j] = list->at[j - 1];
             list->at[i] = x;
@@ -56,7 +56,7 @@ static void put_kink(nt_yield_edges *list, double x)
 }
 
 /* Beyond the end of adhesion each panel is farther out by the same ratio; 0 where that is too coarse. */
-static int edges_of(const nt_yield_solver *s, double a, double e, nt_yield_edges *list)
+static int edges_of(const nt_deform_solver *s, double a, double e, nt_deform_edges *list)
 {
     const double far = 2.0 * s->sample->radius * s->reach + a * a + 4.0 * e, octaves = log2(far / e / FIRST);
     const int panels = (int)fmin(fmax(ceil(octaves / OCTAVES), 3.0), OUTER);
@@ -72,28 +72,28 @@ static int edges_of(const nt_yield_solver *s, double a, double e, nt_yield_edges
 }
 
 /* No gap outside adhesion is below h0, but on the way: there the law stays, since it may have a pole. */
-static nt_pressure law_of(const nt_yield_solver *s, int node)
+static nt_pressure law_of(const nt_deform_solver *s, int node)
 {
     if (node < N)
         return (nt_pressure){0.0, -s->sample->stress, 0.0};
     const int inside = s->gap[node] < s->sample->range;
-    nt_pressure p = nt_yield_law(s, inside ? s->sample->range : s->gap[node]);
+    nt_pressure p = nt_deform_law(s, inside ? s->sample->range : s->gap[node]);
     p.pressure *= s->share;
     p.slope *= inside ? 0.0 : s->share;
     return p;
 }
 
 /* One step of Newton, at the radius of contact or, `held`, at the h that there is; how far, NaN where it cannot. */
-static double newton_step(nt_yield_solver *s, int held)
+static double newton_step(nt_deform_solver *s, int held)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
-    nt_pressure p[NT_YIELD_NODES];
-    double b[NT_YIELD_NODES + 1], ahead = 1.0, far = 0.0, moved = 0.0, u0 = 0.0;
+    nt_pressure p[NT_DEFORM_NODES];
+    double b[NT_DEFORM_NODES + 1], ahead = 1.0, far = 0.0, moved = 0.0, u0 = 0.0;
     for (int j = 0; j < n; ++j)
         p[j] = law_of(s, j);
     for (int i = 0; i < n; ++i) {
-        double slope, u = nt_yield_rim(s, s->h, m->x[i], &slope);
+        double slope, u = nt_deform_rim(s, s->h, m->x[i], &slope);
         for (int j = 0; j < n; ++j) {
             u += m->K[i][j] * p[j].pressure;
             s->A[i][j] = (i == j) - m->K[i][j] * p[j].slope;
@@ -105,7 +105,7 @@ static double newton_step(nt_yield_solver *s, int held)
     }
     s->A[n][n] = -1.0;
     b[n] = held ? 0.0 : s->h + m->a * m->a / s->sample->radius + u0;
-    if (!nt_yield_eliminate(s, b, n + 1))
+    if (!nt_deform_eliminate(s, b, n + 1))
         return NAN;
     for (int i = N; i < n; ++i)
         if (-b[i] > AHEAD * s->gap[i])
@@ -119,7 +119,7 @@ static double newton_step(nt_yield_solver *s, int held)
     return moved / (far + fabs(s->h));
 }
 
-static nt_status newton(nt_yield_solver *s, int held)
+static nt_status newton(nt_deform_solver *s, int held)
 {
     for (int i = 0; i < NEWTONS; ++i) {
         const double moved = newton_step(s, held);
@@ -132,28 +132,28 @@ static nt_status newton(nt_yield_solver *s, int held)
 }
 
 /* The gap where adhesion ends. */
-static double end_gap(const nt_yield_solver *s)
+static double end_gap(const nt_deform_solver *s)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     double slope, g = s->h + 0.5 * (m->a * m->a + m->edges[1]) / s->sample->radius;
-    g += nt_yield_rim(s, s->h, m->edges[1], &slope);
+    g += nt_deform_rim(s, s->h, m->edges[1], &slope);
     for (int j = 0; j < m->count; ++j)
         g += m->K1[j] * law_of(s, j).pressure;
     return g;
 }
 
 /* The gap that is left where adhesion ends at e, over h0, less 1; NaN where there is no equilibrium. */
-static double excess(nt_yield_solver *s, double a, double e, int held)
+static double excess(nt_deform_solver *s, double a, double e, int held)
 {
-    nt_yield_edges list;
+    nt_deform_edges list;
     if (!edges_of(s, a, e, &list) || --s->left < 0)
         return NAN;
-    nt_yield_move(s, list.at, list.count - 1, a);
+    nt_deform_move(s, list.at, list.count - 1, a);
     return newton(s, held) == NT_OK ? end_gap(s) / s->sample->range - 1.0 : (double)NAN;
 }
 
 /* Secants over ln e, from the last slope; most often two or three. */
-static nt_status find_by_secants(nt_yield_solver *s, double a, double guess)
+static nt_status find_by_secants(nt_deform_solver *s, double a, double guess)
 {
     double x = log(guess), f = excess(s, a, guess, 0);
     for (int i = 0; i < SECANTS && s->end_slope > 0.0; ++i) {
@@ -174,7 +174,7 @@ static nt_status find_by_secants(nt_yield_solver *s, double a, double guess)
 }
 
 /* By false position (Illinois) over ln e, in a bracket. */
-static nt_status find_in_bracket(nt_yield_solver *s, double a, double guess)
+static nt_status find_in_bracket(nt_deform_solver *s, double a, double guess)
 {
     double low = log(guess), high = low, spread = 0.05, f_low = excess(s, a, guess, 0), f_high = f_low;
     for (int i = 0; i < EDGES && f_low > 0.0; ++i, spread *= 2.0) {
@@ -209,18 +209,18 @@ static nt_status find_in_bracket(nt_yield_solver *s, double a, double guess)
 }
 
 /* Puts the kinks of the law where they are now; whether one of them has moved. */
-static int place_kinks(nt_yield_solver *s)
+static int place_kinks(nt_deform_solver *s)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     int moved = 0;
     for (int i = 0; i < s->sample->end_count; ++i) {
         double low = m->edges[1], high = m->edges[m->panels];
         const double end = s->sample->ends[i];
-        if (nt_yield_mesh_at(m, s->gap, low * (1.0 + 1e-9)) > end || nt_yield_mesh_at(m, s->gap, high) < end)
+        if (nt_deform_mesh_at(m, s->gap, low * (1.0 + 1e-9)) > end || nt_deform_mesh_at(m, s->gap, high) < end)
             continue;
         for (int k = 0; k < 50; ++k) {
             const double middle = 0.5 * (low + high);
-            *(nt_yield_mesh_at(m, s->gap, middle) < end ? &low : &high) = middle;
+            *(nt_deform_mesh_at(m, s->gap, middle) < end ? &low : &high) = middle;
         }
         moved |= fabs(high - s->kink[i]) > PLACED * high;
         s->kink[i] = high;
@@ -228,7 +228,7 @@ static int place_kinks(nt_yield_solver *s)
     return moved;
 }
 
-nt_status nt_yield_settle_contact(nt_yield_solver *s, double a, double guess)
+nt_status nt_deform_settle_contact(nt_deform_solver *s, double a, double guess)
 {
     nt_status status = NT_E_NO_CONVERGENCE;
     for (int i = 0; i < KINKS; ++i) {
@@ -243,24 +243,24 @@ nt_status nt_yield_settle_contact(nt_yield_solver *s, double a, double guess)
 
 /* What was found. With U stationary in a and in where adhesion ends: F does not depend on a, and on e by
  * dF/de = -pi (sigma0 + p) dg/dh, g the gap there. */
-int nt_yield_report_contact(nt_yield_solver *s, nt_yield_point *point)
+int nt_deform_report_contact(nt_deform_solver *s, nt_deform_point *point)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
     const double R = s->sample->radius, E = s->sample->modulus, a = m->a, h = s->h, e = m->edges[1];
-    double y[NT_YIELD_NODES], slope, F, k, g_h;
+    double y[NT_DEFORM_NODES], slope, F, k, g_h;
     for (int i = 0; i < n; ++i) {
-        (void)nt_yield_rim(s, h, m->x[i], &slope);
+        (void)nt_deform_rim(s, h, m->x[i], &slope);
         y[i] = 1.0 + slope;
         for (int j = 0; j < n; ++j)
             s->A[i][j] = (i == j) - m->K[i][j] * law_of(s, j).slope;
     }
-    if (!nt_yield_eliminate(s, y, n))
+    if (!nt_deform_eliminate(s, y, n))
         return 0;
-    const nt_pressure outer = nt_yield_law(s, nt_yield_outer_gap(s));
+    const nt_pressure outer = nt_deform_law(s, nt_deform_outer_gap(s));
     F = 2.0 * NT_PI * R * outer.energy + 2.0 * E * a * (-h - a * a / (3.0 * R));
     k = 2.0 * NT_PI * R * outer.pressure + 2.0 * E * a;
-    (void)nt_yield_rim(s, h, e, &slope);
+    (void)nt_deform_rim(s, h, e, &slope);
     g_h = 1.0 + slope;
     for (int j = 0; j < n; ++j) {
         const nt_pressure p = law_of(s, j);
@@ -268,8 +268,8 @@ int nt_yield_report_contact(nt_yield_solver *s, nt_yield_point *point)
         k -= m->load[j] * p.slope * y[j];
         g_h += m->K1[j] * p.slope * y[j];
     }
-    const double stress = s->sample->stress + nt_yield_law(s, s->sample->range).pressure;
-    *point = (nt_yield_point){h, F, k, 0.0, 0.0, a, 0.0};
+    const double stress = s->sample->stress + nt_deform_law(s, s->sample->range).pressure;
+    *point = (nt_deform_point){h, F, k, 0.0, 0.0, a, 0.0};
     const double wider = excess(s, a, e * (1.0 + NUDGE), 1), narrower = excess(s, a, e * (1.0 - NUDGE), 1);
     point->k -= NT_PI * stress * g_h * g_h / ((wider - narrower) * s->sample->range / (2.0 * NUDGE * e));
     (void)excess(s, a, e, 1);
@@ -277,9 +277,9 @@ int nt_yield_report_contact(nt_yield_solver *s, nt_yield_point *point)
 }
 
 /* Adhesion alone, which is linear; then with more and more of the law. */
-nt_status nt_yield_begin_contact(nt_yield_solver *s, const nt_yield_sample *sample, double a)
+nt_status nt_deform_begin_contact(nt_deform_solver *s, const nt_deform_sample *sample, double a)
 {
-    nt_yield_edges list;
+    nt_deform_edges list;
     s->sample = sample;
     s->reach = reach_of(sample);
     s->end = 2.0 * sample->radius * sample->range;
@@ -287,25 +287,25 @@ nt_status nt_yield_begin_contact(nt_yield_solver *s, const nt_yield_sample *samp
     s->left = MOST_MESHES;
     s->share = s->end_slope = 0.0;
     s->mesh.a = a;
-    for (int i = 0; i < NT_YIELD_ENDS; ++i)
+    for (int i = 0; i < NT_DEFORM_ENDS; ++i)
         s->kink[i] = 0.0;
     if (!edges_of(s, a, s->end, &list))
         return NT_E_NO_CONVERGENCE;
     s->mesh.panels = list.count - 1;
     memcpy(s->mesh.edges, list.at, (size_t)list.count * sizeof *list.at);
-    nt_yield_mesh_make(&s->mesh, sample, s->A[0]);
+    nt_deform_mesh_make(&s->mesh, sample, s->A[0]);
     for (int i = 0; i < s->mesh.count; ++i)
         s->gap[i] = sample->range;
-    nt_status status = nt_yield_settle_contact(s, a, s->end);
+    nt_status status = nt_deform_settle_contact(s, a, s->end);
     for (double done = 0.0, width = 0.25; status == NT_OK && done < 1.0;) {
-        const nt_yield_state before = nt_yield_keep(s);
+        const nt_deform_state before = nt_deform_keep(s);
         s->share = fmin(done + width, 1.0);
-        status = nt_yield_settle_contact(s, a, s->end);
+        status = nt_deform_settle_contact(s, a, s->end);
         if (status == NT_OK) {
             done = s->share;
             width *= 2.0;
         } else if ((width *= 0.4) > LEAST) {
-            nt_yield_restore(s, &before);
+            nt_deform_restore(s, &before);
             status = NT_OK;
         }
     }
@@ -313,7 +313,7 @@ nt_status nt_yield_begin_contact(nt_yield_solver *s, const nt_yield_sample *samp
 }
 
 /* 2 pi R Int W from a gap on, of rigid bodies; Simpson over ln gap [J]. */
-static double energy_beyond(const nt_yield_sample *sample, double gap)
+static double energy_beyond(const nt_deform_sample *sample, double gap)
 {
     enum { STEPS_OUT = 400 };
     const double width = log(FARTHEST / gap) / STEPS_OUT;
@@ -325,11 +325,11 @@ static double energy_beyond(const nt_yield_sample *sample, double gap)
     return 2.0 * NT_PI * sample->radius * sum * width / 3.0;
 }
 
-double nt_yield_energy_in_contact(const nt_yield_solver *s)
+double nt_deform_energy_in_contact(const nt_deform_solver *s)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     const double a = m->a, R = s->sample->radius, E = s->sample->modulus, d = -s->h;
-    const double held = nt_yield_law(s, s->sample->range).energy, adhesion = s->sample->stress;
+    const double held = nt_deform_law(s, s->sample->range).energy, adhesion = s->sample->stress;
     double U = E * a * (d * d + a * a / R * (-2.0 / 3.0 * d + 0.2 * a * a / R));
     U += NT_PI * a * a * (held - adhesion * s->sample->range);
     for (int i = 0; i < m->count; ++i) {
@@ -337,8 +337,8 @@ double nt_yield_energy_in_contact(const nt_yield_solver *s)
         for (int j = 0; j < m->count; ++j)
             u += m->K[i][j] * law_of(s, j).pressure;
         U += 0.5 * m->area[i] * law_of(s, i).pressure * u;
-        U +=
-            m->area[i] * (i < N ? held - adhesion * (s->sample->range - s->gap[i]) : nt_yield_law(s, s->gap[i]).energy);
+        U += m->area[i] *
+             (i < N ? held - adhesion * (s->sample->range - s->gap[i]) : nt_deform_law(s, s->gap[i]).energy);
     }
-    return U + energy_beyond(s->sample, nt_yield_outer_gap(s));
+    return U + energy_beyond(s->sample, nt_deform_outer_gap(s));
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rigid paraboloid before and on a sample that yields to any pressure of the gap: gap and displacement solved
+"""A rigid paraboloid before and on a sample that deforms under any pressure of the gap: gap and displacement solved
 together, with an adaptive mesh and no approximation but its tolerance. What `scene.plan` says of soft samples is
 measured against it; it shares no code with plans.
 
@@ -29,7 +29,7 @@ _FAR = 1e-11  # of the force, that is left beyond the mesh
 WIDEST = 30.0  # times R, where the mesh of a law that fades slower ends
 
 
-class Yielded(NamedTuple):
+class Deformed(NamedTuple):
     """One equilibrium of tip and sample."""
 
     gap: float
@@ -56,7 +56,7 @@ class _State:
     gaps: Floats
 
 
-class Yielding:
+class Deformation:
     """The sample under one tip; states follow each other, so ask for gaps in order, from far away inwards."""
 
     def __init__(
@@ -72,23 +72,23 @@ class Yielding:
         self.touch: float | None = None
         """the gap of the undeformed bodies where they touch, once they have [m]"""
 
-    def at(self, gap: float) -> Yielded:
+    def at(self, gap: float) -> Deformed:
         """At a gap of the undeformed bodies [m]."""
         return self._go("gap", gap)
 
-    def at_centre(self, centre_gap: float) -> Yielded:
+    def at_centre(self, centre_gap: float) -> Deformed:
         """At a gap under the apex [m]: through the folds of an attraction, too."""
         return self._go("centre", centre_gap)
 
-    def touching(self, contact_radius: float) -> Yielded:
+    def touching(self, contact_radius: float) -> Deformed:
         """In contact over a radius [m]."""
         return self._go("contact", contact_radius)
 
-    def curve(self, gaps: Iterable[float]) -> list[Yielded]:
+    def curve(self, gaps: Iterable[float]) -> list[Deformed]:
         """Gap after gap, in contact where the bodies touch."""
         return [self._anywhere(gap) for gap in gaps]
 
-    def jump_in(self, nearest: float, farthest: float) -> Yielded:
+    def jump_in(self, nearest: float, farthest: float) -> Deformed:
         """Where an attraction jumps on approach: the smallest gap of its branch, between two gaps under the apex."""
         golden = (math.sqrt(5.0) - 1.0) / 2.0
         low, high = math.log(nearest), math.log(farthest)
@@ -105,7 +105,7 @@ class Yielding:
                 at_right = self.at_centre(math.exp(right))
         return at_left
 
-    def at_force(self, force: float, far: float) -> Yielded:
+    def at_force(self, force: float, far: float) -> Deformed:
         """Where a repulsion carries a force [N]: inwards from a gap `far` [m], then Newton."""
         here, step = self._anywhere(far), 0.2 * self._length(far)
         last = here
@@ -121,7 +121,7 @@ class Yielding:
             low, high = (here.gap, high) if here.force > force else (low, here.gap)
         raise SolverError(f"no gap with a force of {force:g} N")
 
-    def _anywhere(self, gap: float) -> Yielded:
+    def _anywhere(self, gap: float) -> Deformed:
         """At a gap, in contact where the bodies touch."""
         if self.touch is None:
             try:
@@ -135,7 +135,7 @@ class Yielding:
             self.touch = self.at_centre(0.0).gap
         if gap >= self.touch:
             return self.at(gap)
-        low, high = 0.0, math.sqrt(self.R * (self.touch - gap))  # a of Hertz, which yields less
+        low, high = 0.0, math.sqrt(self.R * (self.touch - gap))  # a of Hertz, which deforms less
         f_low, f_high = self.touch - gap, self.touching(high).gap - gap
         while f_high > 0.0:
             low, f_low, high = high, f_high, 1.3 * high
@@ -165,7 +165,7 @@ class Yielding:
             rise *= 1.3
         return 2.0 * self.R * rise
 
-    def _go(self, control: str, value: float) -> Yielded:
+    def _go(self, control: str, value: float) -> Deformed:
         """Newton on a mesh, a finer mesh, ... until the pressure is resolved; half the way first where that fails."""
         start = self._state
         if start is None:
@@ -216,7 +216,7 @@ class Yielding:
         count = max(4, math.ceil(math.log2(far / unit)) + 1)
         return np.concatenate([[0.0], far * 0.5 ** np.arange(count)[::-1]])
 
-    def _solve(self, control: str, value: float) -> Yielded:
+    def _solve(self, control: str, value: float) -> Deformed:
         assert self._state is not None
         state = self._state
         a = value if control == "contact" else 0.0
@@ -345,7 +345,7 @@ class Yielding:
                 high = middle
         return float((low + high) / 2.0)
 
-    def _report(self, state: _State, control: str) -> Yielded:
+    def _report(self, state: _State, control: str) -> Deformed:
         mesh, g, h = state.mesh, state.gaps, state.h
         a, R, E = mesh.a, self.R, self.E
         p, slope = self.law.pressure(g), self.law.slope(g)
@@ -362,14 +362,14 @@ class Yielding:
         if a == 0.0:
             k = -float((slope * by_h) @ mesh.area)
             centre = h + float(mesh.K0 @ p)
-            return Yielded(h, force, k, energy, centre, centre - h, 0.0, g.size)
+            return Deformed(h, force, k, energy, centre, centre - h, 0.0, g.size)
         d = -h
         force = 2.0 * E * (a * d - a**3 / (3.0 * R)) + 4.0 * float(mesh.weight @ q) + rest
         energy += E * (d * d * a - 2.0 / 3.0 * d * a**3 / R + a**5 / (5.0 * R * R))
         energy += math.pi * a * a * float(self.law.energy(np.zeros(1))[0])
         # At fixed h the force does not depend on a in first order, the energy being stationary: k = -dF/dh.
         k = self._contact_stiffness(mesh, slope, np.asarray(by_h))
-        return Yielded(h, force, k, energy, 0.0, d, a, g.size)
+        return Deformed(h, force, k, energy, 0.0, d, a, g.size)
 
     def _contact_stiffness(self, mesh: Mesh, slope: Floats, by_h: Floats) -> float:
         """-dF/dh at fixed a: where q is continuous at a, F is stationary in a."""

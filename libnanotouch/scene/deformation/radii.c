@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The tables of a sample that yields for all effective radii of a surface: each that of a flat, made for its radius.
+ * The tables of a sample that deforms for all effective radii of a surface: each that of a flat, made for its radius.
  * Half of them first; what the others differ by from what lies between those is measured, and the bound has half of
  * it, since of four points each half as far apart a cubic errs by an eighth. */
 #include <math.h>
 
+#include "scene/deformation/cubic.h"
 #include "scene/terms/term.h"
-#include "scene/yielding/cubic.h"
 
 #define APART 0.7 /* of ln R: the first tables, at most */
 #define LEAST 0.01
@@ -21,15 +21,15 @@ enum { CELLS = 2, OF_EACH = 2, NEARER = 5 }; /* at least so many; samples of eac
 typedef struct relief_maker {
     nt_plan *plan;
     const nt_scene *scene;
-    nt_yield_wanted of;
-    nt_yield_worst *worst;
+    nt_deform_wanted of;
+    nt_deform_worst *worst;
     double work;      /* that a measured pull-off force has [J/m^2]; 0: that of the scene */
     double low, high; /* radii between which tables are alike [m] */
     double missing;   /* a radius that has none like them [m] */
-    const nt_yield_table *like;
+    const nt_deform_table *like;
 } relief_maker;
 
-static int is_like(const nt_yield_table *one, const nt_yield_table *other)
+static int is_like(const nt_deform_table *one, const nt_deform_table *other)
 {
     return one->jumps == other->jumps && one->holds == other->holds && !isinf(one->touch) == !isinf(other->touch);
 }
@@ -43,27 +43,27 @@ static nt_status make_one(relief_maker *m, double radius, int slot)
     at.surface = NULL;
     at.radii = at.followed = NULL;
     at.relief.count = 0;
-    at.yield.count = at.yield.holds = 0;
+    at.deformation.count = at.deformation.holds = 0;
     nt_status status = nt_plan_laws_at(&at, m->scene, m->work, NULL);
     if (status == NT_OK)
-        status = nt_plan_yield_table(&at, m->scene, &m->of);
+        status = nt_plan_deform_table(&at, m->scene, &m->of);
     if (status == NT_OK)
-        status = nt_plan_yield_compose(&at, m->scene, m->work);
-    if (status != NT_OK || (m->like && !is_like(&at.yield, m->like))) {
+        status = nt_plan_deform_compose(&at, m->scene, m->work);
+    if (status != NT_OK || (m->like && !is_like(&at.deformation, m->like))) {
         m->missing = radius;
         return NT_E_RANGE;
     }
-    m->plan->relief.room[slot] = at.yield;
+    m->plan->relief.room[slot] = at.deformation;
     m->worst->pull_off_force = fmax(m->worst->pull_off_force, at.pull_off_force);
     m->worst->minimum_spring = fmax(m->worst->minimum_spring, at.minimum_spring);
     m->worst->maximum_stiffness = fmax(m->worst->maximum_stiffness, at.maximum_stiffness);
-    m->worst->moved = fmax(m->worst->moved, at.yield.jump_error);
+    m->worst->moved = fmax(m->worst->moved, at.deformation.jump_error);
     m->low = fmin(m->low, radius);
     m->high = fmax(m->high, radius);
     return NT_OK;
 }
 
-static double radius_of(const nt_yield_relief *relief, double index)
+static double radius_of(const nt_deform_relief *relief, double index)
 {
     return relief->first * exp(index * relief->step);
 }
@@ -71,7 +71,7 @@ static double radius_of(const nt_yield_relief *relief, double index)
 /* From the tip's own radius outwards, so that all radii between two that are known are known. */
 static nt_status make_first(relief_maker *m)
 {
-    nt_yield_relief *relief = &m->plan->relief;
+    nt_deform_relief *relief = &m->plan->relief;
     const int count = relief->count;
     int up = 0;
     while (up < count && radius_of(relief, up) < m->plan->contact.radius)
@@ -89,9 +89,9 @@ static nt_status make_first(relief_maker *m)
  * touch first. With adhesion that of the tip's own radius must have a contact. */
 static nt_status begin(relief_maker *m)
 {
-    nt_yield_relief *relief = &m->plan->relief;
+    nt_deform_relief *relief = &m->plan->relief;
     const int adheres = m->plan->source != NT_ADHESION_NONE;
-    m->like = adheres ? &m->plan->yield : NULL;
+    m->like = adheres ? &m->plan->deformation : NULL;
     const nt_status status = make_one(m, adheres ? m->plan->contact.radius : relief->first, 0);
     if (adheres)
         return status;
@@ -107,7 +107,7 @@ static double over(double error, double value, double scale)
     return fabs(error) / fmax(fabs(value), scale);
 }
 
-static double difference(const nt_plan *plan, const nt_yield_wanted *of, const nt_law_value *found,
+static double difference(const nt_plan *plan, const nt_deform_wanted *of, const nt_law_value *found,
                          const nt_law_value *truth)
 {
     if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
@@ -117,7 +117,7 @@ static double difference(const nt_plan *plan, const nt_yield_wanted *of, const n
 }
 
 /* The gap of the plan that a place in a cell of a table is [m]. */
-static double gap_of(const nt_yield_table *table, int part, double v)
+static double gap_of(const nt_deform_table *table, int part, double v)
 {
     if (part == 0)
         return table->hold - v;
@@ -127,14 +127,14 @@ static double gap_of(const nt_yield_table *table, int part, double v)
 }
 
 /* Without adhesion laws are held over a distance where the bodies touch, at either end of which the stiffness jumps. */
-static int near_fold(const nt_plan *plan, const nt_yield_table *table, double beside, double distance)
+static int near_fold(const nt_plan *plan, const nt_deform_table *table, double beside, double distance)
 {
     const double other = plan->source == NT_ADHESION_NONE ? table->hold : 0.0;
     return fabs(beside) < distance || fabs(beside + other) < distance;
 }
 
 /* Of a table to what the others make of its radius, but nearer to its fold than that is known. */
-static double error_of(const relief_maker *m, const nt_yield_table *table, double moved)
+static double error_of(const relief_maker *m, const nt_deform_table *table, double moved)
 {
     const nt_place place = {.radius = {.radius = table->ratio * m->plan->contact.radius}};
     const double load = DEEPER * m->scene->range.maximum_load;
@@ -145,39 +145,39 @@ static double error_of(const relief_maker *m, const nt_yield_table *table, doubl
         for (int j = 0; j <= OF_EACH && i != table->apart; ++j) {
             const double from = table->node[i - 1].v, share = (double)j / OF_EACH;
             const double gap = gap_of(table, part, from + share * (table->node[i].v - from));
-            const nt_law_value truth = nt_yield_around(m->plan, table, attached, gap);
+            const nt_law_value truth = nt_deform_around(m->plan, table, attached, gap);
             const int sharp = part < 0 || attached || m->plan->demand.quantity == NT_QUANTITY_STIFFNESS;
             if (truth.F > load || (sharp && near_fold(m->plan, table, gap - fold, FAR * moved)))
                 continue;
-            const nt_law_value found = nt_yield_relief_at(m->plan, &place, attached, gap).law;
+            const nt_law_value found = nt_deform_relief_at(m->plan, &place, attached, gap).law;
             worst = fmax(worst, difference(m->plan, &m->of, &found, &truth));
         }
     }
     if (table->share > 0.0) { /* and what it keeps in contact */
-        const nt_law_value truth = nt_yield_around(m->plan, table, 1, 0.0);
-        const nt_law_value found = nt_yield_relief_at(m->plan, &place, 1, 0.0).law;
+        const nt_law_value truth = nt_deform_around(m->plan, table, 1, 0.0);
+        const nt_law_value found = nt_deform_relief_at(m->plan, &place, 1, 0.0).law;
         worst = fmax(worst, difference(m->plan, &m->of, &found, &truth));
     }
     return worst;
 }
 
 /* How far folds are from where they should be [m]. */
-static double moved_of(const nt_plan *plan, const nt_yield_table *table)
+static double moved_of(const nt_plan *plan, const nt_deform_table *table)
 {
     const double radius = table->ratio * plan->contact.radius;
-    const double touch = isinf(table->touch) ? 0.0 : nt_yield_relief_fold(plan, radius, 0) - table->touch;
-    const double release = table->holds ? nt_yield_relief_fold(plan, radius, 1) - table->release : 0.0;
+    const double touch = isinf(table->touch) ? 0.0 : nt_deform_relief_fold(plan, radius, 0) - table->touch;
+    const double release = table->holds ? nt_deform_relief_fold(plan, radius, 1) - table->release : 0.0;
     return fmax(fabs(touch), fabs(release));
 }
 
 /* Tables half way between those there are, and what these err by. */
 static nt_status halve(relief_maker *m)
 {
-    nt_yield_relief *relief = &m->plan->relief;
+    nt_deform_relief *relief = &m->plan->relief;
     const int count = relief->count;
-    const nt_yield_table *between[NT_YIELD_RADII];
+    const nt_deform_table *between[NT_DEFORM_RADII];
     double error = 0.0, moved = 0.0;
-    if (2 * count - 1 > NT_YIELD_RADII)
+    if (2 * count - 1 > NT_DEFORM_RADII)
         return NT_E_NO_CONVERGENCE;
     for (int i = 0; i < count - 1; ++i) {
         if (make_one(m, radius_of(relief, i + 0.5), count + i) != NT_OK)
@@ -205,7 +205,7 @@ static double work_of(const nt_plan *plan, const nt_scene *scene)
     if (scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF || plan->source == NT_ADHESION_NONE)
         return 0.0;
     nt_plan_copy(&own, plan);
-    nt_yield_join(&own, &own.yield);
+    nt_deform_join(&own, &own.deformation);
     return nt_plan_adhere(&own, scene, NULL) == NT_OK ? own.contact.work_of_adhesion + own.tail : 0.0;
 }
 
@@ -213,7 +213,7 @@ static double work_of(const nt_plan *plan, const nt_scene *scene)
 static void find_limit(relief_maker *m)
 {
     double missing = m->missing;
-    for (int i = 0; i < NEARER && m->plan->source != NT_ADHESION_NONE && !m->plan->yield.holds; ++i) {
+    for (int i = 0; i < NEARER && m->plan->source != NT_ADHESION_NONE && !m->plan->deformation.holds; ++i) {
         const double good = missing < m->low ? m->low : m->high, middle = sqrt(good * missing);
         if (make_one(m, middle, 0) != NT_OK)
             missing = middle;
@@ -226,7 +226,7 @@ static nt_status refuse(relief_maker *m, nt_problem *problem)
     if (!problem || m->missing == m->plan->contact.radius)
         return NT_E_RANGE;
     find_limit(m);
-    *problem = (nt_problem){NT_YIELD_SPREAD, "m", m->missing, m->low, m->high};
+    *problem = (nt_problem){NT_DEFORM_SPREAD, "m", m->missing, m->low, m->high};
     return NT_E_RANGE;
 }
 
@@ -242,10 +242,10 @@ static nt_status refuse_error(const relief_maker *m, double most, nt_problem *pr
     return NT_E_RANGE;
 }
 
-nt_status nt_plan_yield_over(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of, double most,
-                             nt_yield_worst *worst, nt_problem *problem)
+nt_status nt_plan_deform_over(nt_plan *plan, const nt_scene *scene, const nt_deform_wanted *of, double most,
+                              nt_deform_worst *worst, nt_problem *problem)
 {
-    nt_yield_relief *relief = &plan->relief;
+    nt_deform_relief *relief = &plan->relief;
     const double R = plan->contact.radius, least = plan->radii->minimum, largest = plan->radii->maximum;
     const double span = fmax(log(largest / least), LEAST);
     relief_maker m = {plan, scene, *of, worst, work_of(plan, scene), R, R, 0.0, NULL};

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plans of samples that yield to forces before contact, against the self-consistent half-space and layer."""
+"""Plans of samples that deform under forces before contact, against the self-consistent half-space and layer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from nanotouch.errors import InvalidValue
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "heavy"))
 
-import yielding
+import deformation
 
 
 def gap_at(plan: Plan, force: float) -> float:
@@ -49,17 +49,17 @@ def test_a_gel_gives_under_a_double_layer() -> None:
     soft, plan = gel(), gel().plan(1e-3)
     hard = gel()
     hard.sample.youngs_modulus = 1e12
-    assert plan.explain()["yields"]
+    assert plan.explain()["deforms"]
     assert gap_at(hard.plan(1e-3), 0.2e-9) - gap_at(plan, 0.2e-9) == pytest.approx(240e-9, abs=2e-9)
     gap = gap_at(plan, 0.2e-9)
-    truth = float(reference.yielded_force(soft, [gap])[0])
+    truth = float(reference.deformed_force(soft, [gap])[0])
     assert abs(float(plan.force(gap)) - truth) <= plan.bound * truth
 
 
 @pytest.mark.parametrize("seed", [12, 33, 48, 2007, 2088, 2091])  # of force, stiffness and radius
 def test_random_soft_scenes_keep_the_bound(seed: int) -> None:
-    kind, error, bound = yielding.compare(seed, count=3)
-    assert kind.split(",")[0] in ("yields", "rigid")
+    kind, error, bound = deformation.compare(seed, count=3)
+    assert kind.split(",")[0] in ("deforms", "rigid")
     assert error <= bound
 
 
@@ -72,11 +72,11 @@ def test_force_is_the_derivative_of_energy() -> None:
         assert (law.F[2] - law.F[0]) / (2.0 * step) == pytest.approx(law.k[1], rel=1e-3)
 
 
-def test_a_plan_says_whether_its_sample_yields() -> None:
-    assert "sample: yields to all forces together, elastic number" in str(gel().plan())
+def test_a_plan_says_whether_its_sample_deforms() -> None:
+    assert "sample: deforms under all forces together, elastic number" in str(gel().plan())
     stiff = gel()
     stiff.sample.youngs_modulus = 1e12
-    assert "sample: does not yield before contact" in str(stiff.plan(0.3))
+    assert "sample: does not deform before contact" in str(stiff.plan(0.3))
 
 
 def test_what_neither_form_keeps_is_refused() -> None:
@@ -98,7 +98,7 @@ def sticky(modulus: float, hamaker: float = 6e-20) -> Scene:
     )
 
 
-def errors_of(scene: Scene, plan: Plan, truth: reference.YieldedScene, history: str) -> np.ndarray:
+def errors_of(scene: Scene, plan: Plan, truth: reference.DeformedScene, history: str) -> np.ndarray:
     """At gaps beside the folds and far from them, over the larger of force and scale."""
     capture, release = plan.explain()["capture_gap"], plan.explain()["release_gap"]
     gaps = np.array([8.0 * capture, 2.0 * capture, 1.05 * capture, 0.95 * capture, -capture, 0.9 * release])
@@ -112,21 +112,21 @@ def errors_of(scene: Scene, plan: Plan, truth: reference.YieldedScene, history: 
 def test_a_surface_bulges_and_jumps_towards_the_tip(modulus: float, jumps: bool) -> None:
     """From soft to where the tail goes on into contact: forces within the bound, the jump within its distance."""
     scene = sticky(modulus)
-    plan, truth = scene.plan(5e-3), reference.yielded_scene(scene, tolerance=1e-5)
+    plan, truth = scene.plan(5e-3), reference.deformed_scene(scene, tolerance=1e-5)
     facts = plan.explain()
-    assert facts["yields"]
+    assert facts["deforms"]
     assert truth.jumps == jumps
     assert facts["capture_gap"] == pytest.approx(truth.capture_gap, abs=max(plan.fold_shift_m, 1e-18))
     for history in ("approach", "retract"):
-        assert np.all(errors_of(scene, plan, reference.yielded_scene(scene, 1e-5), history) <= plan.bound)
+        assert np.all(errors_of(scene, plan, reference.deformed_scene(scene, 1e-5), history) <= plan.bound)
 
 
 @pytest.mark.parametrize("modulus", [3e10, 1e12])
 def test_beyond_what_a_table_keeps_the_finest_one_is_taken(modulus: float) -> None:
     """With its own bound, far below what a rigid sample errs by, and a warning."""
     scene = sticky(modulus)
-    plan, truth = scene.plan(1e-7), reference.yielded_scene(scene, tolerance=1e-8)
-    assert plan.explain()["yields"]
+    plan, truth = scene.plan(1e-7), reference.deformed_scene(scene, tolerance=1e-8)
+    assert plan.explain()["deforms"]
     assert 1e-7 < plan.bound < 0.01 * plan.explain()["rigid_error"]
     assert any("more than demanded" in warning.text for warning in plan.warnings)
     for history in ("approach", "retract"):
@@ -151,11 +151,11 @@ def test_a_stricter_demand_has_no_looser_bound(name: str, quantity: str) -> None
 def test_with_no_demand_a_stiff_sample_is_rigid(modulus: float) -> None:
     """Beside contact the tail pulls more than that, and less than the bound."""
     scene = sticky(modulus)
-    plan, truth = scene.plan(0.0), reference.yielded_scene(scene, tolerance=1e-8)
+    plan, truth = scene.plan(0.0), reference.deformed_scene(scene, tolerance=1e-8)
     capture = plan.explain()["capture_gap"]
     gaps = capture * np.array([3.0, 1.5, 1.1])
     error = np.abs([plan.force(gap) for gap in gaps] - truth.force(gaps, "approach")) / plan.scale
-    assert not plan.explain()["yields"]
+    assert not plan.explain()["deforms"]
     assert 0.0 < error.max() <= plan.bound
 
 
@@ -169,7 +169,7 @@ def test_the_bound_of_a_surface_with_properties_is_that_of_its_softest_place(dem
     scene = sticky(stiff)
     surface = Surface.touched_by(scene, flat, youngs_modulus=modulus)
     plan = scene.plan(demand, surface=surface)
-    truth = reference.yielded_scene(sticky(soft), tolerance=1e-8)
+    truth = reference.deformed_scene(sticky(soft), tolerance=1e-8)
     gaps = plan.explain()["capture_gap"] * np.array([3.0, 1.5, 1.1])
     at = np.column_stack([np.full(3, 40e-9), np.full(3, 80e-9), gaps])
     error = np.abs(Interaction(plan, "approach").eval(at).Fz - truth.force(gaps, "approach")) / plan.scale
@@ -180,7 +180,9 @@ def test_a_surface_that_would_jump_is_refused_in_words() -> None:
     flat = Topography(np.zeros((16, 16)), (10e-9, 10e-9))
     scene = sticky(1e12)
     surface = Surface.touched_by(scene, flat, youngs_modulus=np.linspace(1e6, 1e12, 256).reshape(16, 16))
-    with pytest.raises(InvalidValue, match=r"yields to van der Waals, which cannot be planned here .*: no bound of"):
+    with pytest.raises(
+        InvalidValue, match=r"deforms under van der Waals, which cannot be planned here .*: no bound of"
+    ):
         scene.plan(0.01, surface=surface)
 
 
@@ -219,9 +221,9 @@ def test_contact_under_a_double_layer_is_solved_with_it() -> None:
         adhesion={"work_of_adhesion": 1e-3, "hamaker_constant": 0.0},
         range={"maximum_load": 2e-8},
     )
-    plan, truth = scene.plan(1e-3), reference.yielded_scene(scene, 1e-5)
+    plan, truth = scene.plan(1e-3), reference.deformed_scene(scene, 1e-5)
     facts, around = plan.explain(), truth.surrounded
-    assert facts["yields"]
+    assert facts["deforms"]
     assert around is not None
     assert around.release is not None
     assert facts["capture_gap"] == pytest.approx(truth.capture_gap, abs=plan.fold_shift_m)
@@ -243,9 +245,9 @@ def test_contact_at_a_potential_has_all_of_w() -> None:
         adhesion={"work_of_adhesion": 38e-3, "hamaker_constant": 4.6e-20, "contact_potential": 0.34},
         range={"maximum_load": 3e-8},
     )
-    plan, truth = scene.plan(0.01), reference.yielded_scene(scene, 1e-5)
+    plan, truth = scene.plan(0.01), reference.deformed_scene(scene, 1e-5)
     facts, around = plan.explain(), truth.surrounded
-    assert facts["yields"]
+    assert facts["deforms"]
     assert around is not None
     assert around.release is not None
     assert facts["capture_gap"] == pytest.approx(truth.capture_gap, abs=plan.fold_shift_m)
@@ -264,7 +266,7 @@ def test_folds_in_a_liquid_are_those_of_all_of_w() -> None:
     release = whole.plan(0.01, quantity="folds").explain()["release_gap"]
     for quantity in ("force", "radius", "folds"):
         facts = scene.plan(0.01, quantity=quantity).explain()  # type: ignore[arg-type]
-        assert facts["yields"]
+        assert facts["deforms"]
         assert facts["release_gap"] == pytest.approx(release, rel=1e-9)
 
 
@@ -279,8 +281,8 @@ def test_beside_a_neck_a_law_acts_in_full() -> None:
         range={"maximum_load": 5.4e-8},
     )
     plan = scene.plan(0.1)
-    assert not plan.explain()["yields"]
-    around = reference.yielded_scene(scene, 1e-4).surrounded
+    assert not plan.explain()["deforms"]
+    around = reference.deformed_scene(scene, 1e-4).surrounded
     assert around is not None
     assert around.release is not None
     pulled = around.touching(1.45 * around.release.contact_radius)

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A cell of the table of a sample that yields: F as a cubic of v, and U, its integral over h. Private to scene/. */
-#ifndef NANOTOUCH_SCENE_YIELD_CUBIC_H
-#define NANOTOUCH_SCENE_YIELD_CUBIC_H
+ * A cell of the table of a sample that deforms: F as a cubic of v, and U, its integral over h. Private to scene/. */
+#ifndef NANOTOUCH_SCENE_DEFORM_CUBIC_H
+#define NANOTOUCH_SCENE_DEFORM_CUBIC_H
 
 #include <math.h>
 
-#include "scene/yielding/yield.h"
+#include "scene/deformation/deform.h"
 
 /* The cubic of a cell at t = v - v0, and its slope. */
-static inline void cubic(const nt_yield_node *from, const nt_yield_node *to, double c[4])
+static inline void cubic(const nt_deform_node *from, const nt_deform_node *to, double c[4])
 {
     const double w = to->v - from->v, rise = (to->F - from->F) / w;
     c[0] = from->F;
@@ -28,12 +28,12 @@ static inline double slope_at(const double c[4], double t)
 }
 
 /* Whether v is a square root in the part of a node: -1 before a jump, 1 in contact, 0: v = -h. */
-static inline int part_of(const nt_yield_table *table, int node)
+static inline int part_of(const nt_deform_table *table, int node)
 {
     return node >= table->apart ? 1 : table->jumps ? -1 : 0;
 }
 
-static inline double v_of(const nt_yield_table *table, int part, double h)
+static inline double v_of(const nt_deform_table *table, int part, double h)
 {
     if (part > 0)
         return sqrt(fmax((table->holds ? table->release : table->touch) - h, 0.0));

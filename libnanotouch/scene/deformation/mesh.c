@@ -10,9 +10,9 @@
 #include <string.h>
 
 #include "core/same_bits.h"
-#include "scene/yielding/yield.h"
+#include "scene/deformation/deform.h"
 
-enum { N = NT_YIELD_ORDER, NT = 2 * NT_YIELD_ORDER + 4, PIECES = 6 };
+enum { N = NT_DEFORM_ORDER, NT = 2 * NT_DEFORM_ORDER + 4, PIECES = 6 };
 
 /* Legendre polynomials 0 .. N - 1 at y in -1..1. */
 static void legendre(double y, double P[N])
@@ -61,7 +61,7 @@ static basis basis_of(void)
     return b;
 }
 
-double nt_yield_mesh_tail(const nt_yield_mesh *mesh, const double *values, int panel)
+double nt_deform_mesh_tail(const nt_deform_mesh *mesh, const double *values, int panel)
 {
     double tail = 0.0;
     for (int k = N - 2; k < N; ++k) {
@@ -73,7 +73,7 @@ double nt_yield_mesh_tail(const nt_yield_mesh *mesh, const double *values, int p
     return tail;
 }
 
-double nt_yield_mesh_at(const nt_yield_mesh *mesh, const double *values, double x)
+double nt_deform_mesh_at(const nt_deform_mesh *mesh, const double *values, double x)
 {
     const double last = mesh->edges[mesh->panels], inside = fmin(fmax(x, 0.0), last);
     int panel = 0;
@@ -89,7 +89,7 @@ double nt_yield_mesh_at(const nt_yield_mesh *mesh, const double *values, double 
 }
 
 /* q(tau) of a unit pressure at each node. */
-static void abel_row(const nt_yield_mesh *mesh, const basis *b, double tau, double row[NT_YIELD_NODES])
+static void abel_row(const nt_deform_mesh *mesh, const basis *b, double tau, double row[NT_DEFORM_NODES])
 {
     for (int panel = 0; panel < mesh->panels; ++panel) {
         const double e0 = mesh->edges[panel], e1 = mesh->edges[panel + 1];
@@ -112,13 +112,13 @@ static void abel_row(const nt_yield_mesh *mesh, const basis *b, double tau, doub
 }
 
 /* Of a bonded layer (Chen and Engel 1972). */
-static nt_yield_spectrum spectrum_of(const nt_yield_sample *sample)
+static nt_deform_spectrum spectrum_of(const nt_deform_sample *sample)
 {
     static const double pieces[PIECES + 1] = {0.0, 0.5, 1.5, 3.0, 6.0, 10.0, 16.0};
     const double nu = sample->poisson_ratio;
     const basis b = basis_of();
-    nt_yield_spectrum s;
-    for (int i = 0; i < NT_YIELD_WAVES; ++i) {
+    nt_deform_spectrum s;
+    for (int i = 0; i < NT_DEFORM_WAVES; ++i) {
         const double from = pieces[i / N], width = pieces[i / N + 1] - from, kappa = from + width * b.x[i % N];
         const double top = (3.0 - 4.0 * nu) * sinh(2.0 * kappa) - 2.0 * kappa;
         const double bottom =
@@ -130,7 +130,7 @@ static nt_yield_spectrum spectrum_of(const nt_yield_sample *sample)
 }
 
 /* One t of the quadrature into K (here: of the energy) and load. */
-static void add_row(nt_yield_mesh *mesh, const double row[NT_YIELD_NODES], double weight)
+static void add_row(nt_deform_mesh *mesh, const double row[NT_DEFORM_NODES], double weight)
 {
     for (int i = 0; i < mesh->count; ++i) {
         const double scaled = weight * row[i];
@@ -140,17 +140,17 @@ static void add_row(nt_yield_mesh *mesh, const double row[NT_YIELD_NODES], doubl
     }
 }
 
-static void add_waves(const nt_yield_mesh *mesh, const nt_yield_spectrum *s, const double row[NT_YIELD_NODES],
+static void add_waves(const nt_deform_mesh *mesh, const nt_deform_spectrum *s, const double row[NT_DEFORM_NODES],
                       double *waves, const double tw[2])
 {
-    for (int n = 0; n < NT_YIELD_WAVES; ++n) {
+    for (int n = 0; n < NT_DEFORM_WAVES; ++n) {
         const double wave = tw[1] * cos(s->k[n] * tw[0]);
         for (int i = 0; i < mesh->count; ++i)
-            waves[n * NT_YIELD_NODES + i] += wave * row[i];
+            waves[n * NT_DEFORM_NODES + i] += wave * row[i];
     }
 }
 
-static void place_nodes(nt_yield_mesh *mesh, const basis *b)
+static void place_nodes(nt_deform_mesh *mesh, const basis *b)
 {
     mesh->count = mesh->panels * N;
     for (int i = 0; i < mesh->count; ++i) {
@@ -160,12 +160,12 @@ static void place_nodes(nt_yield_mesh *mesh, const basis *b)
     }
 }
 
-void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, double *waves)
+void nt_deform_mesh_make(nt_deform_mesh *mesh, const nt_deform_sample *sample, double *waves)
 {
     const basis b = basis_of();
     const int layered = sample->thickness > 0.0;
-    double y[NT], w[NT], row[NT_YIELD_NODES];
-    nt_yield_spectrum s;
+    double y[NT], w[NT], row[NT_DEFORM_NODES];
+    nt_deform_spectrum s;
     if (layered)
         s = spectrum_of(sample);
     gauss(NT, y, w);
@@ -179,7 +179,7 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     memset(mesh->push, 0, sizeof mesh->push);
     memset(mesh->under, 0, sizeof mesh->under);
     memset(mesh->under_load, 0, sizeof mesh->under_load);
-    memset(waves, 0, NT_YIELD_WAVES * NT_YIELD_NODES * sizeof *waves);
+    memset(waves, 0, NT_DEFORM_WAVES * NT_DEFORM_NODES * sizeof *waves);
     for (int panel = 0; panel < mesh->panels; ++panel)
         for (int i = 0; i < NT; ++i) {
             const double span = sqrt(mesh->edges[panel + 1]) - sqrt(mesh->edges[panel]);
@@ -196,7 +196,7 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     for (int i = 0; i < mesh->count; ++i)
         mesh->K0[i] = 2.0 / sample->modulus * row[i];
     if (layered)
-        nt_yield_layer_add(mesh, sample, &s, waves);
+        nt_deform_layer_add(mesh, sample, &s, waves);
     for (int i = 0; i < mesh->count; ++i)
         for (int j = i; j < mesh->count; ++j) {
             const double twice = 8.0 / sample->modulus * mesh->K[i][j];

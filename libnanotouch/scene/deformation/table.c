@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The force of a sample that yields as cubics, each as long as the tolerance lets it be; U is their integral.
+ * The force of a sample that deforms as cubics, each as long as the tolerance lets it be; U is their integral.
  *
  * Apart the cubics are in h; in contact in sqrt(h_touch - h), for F - F_touch begins with terms in h and h^(3/2);
  * before a jump, where F - F_jump begins with a square root, in sqrt(h - h_jump). v grows inwards. */
 #include <math.h>
 
-#include "scene/yielding/cubic.h"
+#include "scene/deformation/cubic.h"
 
 #define FIRST_STEP 0.5 /* of the length over which the law falls */
 #define FIRST_RIM 0.05 /* of sqrt(2 R l): the first radius of contact */
@@ -28,24 +28,24 @@
 enum { CLIMB = 60, PARABOLAS = 12, FAILURES = 5, WIDENINGS = 2 };
 
 typedef struct maker {
-    nt_yield_table *table;
-    nt_yield_solver solver;
-    const nt_yield_range *range;
-    nt_yield_hold hold;
+    nt_deform_table *table;
+    nt_deform_solver solver;
+    const nt_deform_range *range;
+    nt_deform_hold hold;
     double end;  /* of what is held */
     double pull; /* at the jump [N] */
-    nt_yield_point last;
+    nt_deform_point last;
 } maker;
 
-static nt_yield_node node_of(const maker *m, int part, const nt_yield_point *point)
+static nt_deform_node node_of(const maker *m, int part, const nt_deform_point *point)
 {
     const double v = v_of(m->table, part, point->h);
-    return (nt_yield_node){v, point->F, point->k * metric(part, v), point->k, 0.0, point->a, point->peak};
+    return (nt_deform_node){v, point->F, point->k * metric(part, v), point->k, 0.0, point->a, point->peak};
 }
 
-static double held(const maker *m, const nt_yield_point *point)
+static double held(const maker *m, const nt_deform_point *point)
 {
-    return m->hold == NT_YIELD_GAP ? point->h : m->hold == NT_YIELD_CENTRE ? point->centre : point->a;
+    return m->hold == NT_DEFORM_GAP ? point->h : m->hold == NT_DEFORM_CENTRE ? point->centre : point->a;
 }
 
 static double over(double error, double value, double scale)
@@ -54,9 +54,9 @@ static double over(double error, double value, double scale)
 }
 
 /* How far the cubic between two nodes is from a point between them, in the norm of the range. */
-static double distance(const maker *m, const nt_yield_node ends[2], int part, const nt_yield_point *between)
+static double distance(const maker *m, const nt_deform_node ends[2], int part, const nt_deform_point *between)
 {
-    const nt_yield_range *range = m->range;
+    const nt_deform_range *range = m->range;
     double c[4];
     cubic(&ends[0], &ends[1], c);
     const double v = v_of(m->table, part, between->h), t = v - ends[0].v;
@@ -68,15 +68,15 @@ static double distance(const maker *m, const nt_yield_node ends[2], int part, co
         const double share = t / (ends[1].v - ends[0].v), a = ends[0].a + share * (ends[1].a - ends[0].a);
         error = fmax(error, over(a - between->a, between->a, range->radius_scale));
     }
-    const double peak = range->attracts ? (double)NAN : nt_yield_peak_between(ends, between->F);
+    const double peak = range->attracts ? (double)NAN : nt_deform_peak_between(ends, between->F);
     if (m->table->layered && between->peak > 0.0 && !isnan(peak))
         error = fmax(error, range->tolerance * fabs(peak / between->peak - 1.0) / PEAKS);
     return error;
 }
 
-static nt_status add(maker *m, nt_yield_node node)
+static nt_status add(maker *m, nt_deform_node node)
 {
-    if (m->table->count >= NT_YIELD_TABLE)
+    if (m->table->count >= NT_DEFORM_TABLE)
         return NT_E_CAPACITY;
     m->table->node[m->table->count++] = node;
     return NT_OK;
@@ -84,17 +84,17 @@ static nt_status add(maker *m, nt_yield_node node)
 
 static int is_done(const maker *m)
 {
-    const int pressed = m->last.F >= m->range->load && !(m->range->touches && m->hold != NT_YIELD_CONTACT);
+    const int pressed = m->last.F >= m->range->load && !(m->range->touches && m->hold != NT_DEFORM_CONTACT);
     return pressed || m->last.h <= m->range->nearest;
 }
 
 /* Whether a step passes over much of the gap under the apex: a law of short range could hide there, or a narrow part of
  * one's own. */
-static int leaps(const maker *m, const nt_yield_point *next)
+static int leaps(const maker *m, const nt_deform_point *next)
 {
-    const nt_yield_sample *sample = m->solver.sample;
+    const nt_deform_sample *sample = m->solver.sample;
     const double centre = m->last.centre;
-    if (m->hold == NT_YIELD_CONTACT)
+    if (m->hold == NT_DEFORM_CONTACT)
         return 0;
     if (sample->reach && next->centre < sample->reach(sample->context, centre))
         return 1;
@@ -104,13 +104,13 @@ static int leaps(const maker *m, const nt_yield_point *next)
 /* Where the solver comes to no end, a surface that rises to meet the tip jumps: no finer table passes it. */
 static int jumps_ahead(const maker *m)
 {
-    return m->hold == NT_YIELD_GAP && m->last.k < 0.0 && m->last.slope > RISES;
+    return m->hold == NT_DEFORM_GAP && m->last.k < 0.0 && m->last.slope > RISES;
 }
 
 /* Point after point until what is held is at its end, or the range is. */
 static nt_status march(maker *m, int part, double step)
 {
-    const double direction = m->hold == NT_YIELD_CONTACT ? 1.0 : -1.0, least = SMALLEST * step;
+    const double direction = m->hold == NT_DEFORM_CONTACT ? 1.0 : -1.0, least = SMALLEST * step;
     nt_status status = add(m, node_of(m, part, &m->last));
     int failed = 0;
     while (status == NT_OK && !is_done(m)) {
@@ -119,12 +119,12 @@ static nt_status march(maker *m, int part, double step)
             return NT_OK;
         const double to =
             step > 0.7 * left ? (step >= left ? m->end : from + 0.5 * (m->end - from)) : from + direction * step;
-        nt_yield_point between = {0}, next = {0};
-        status = nt_yield_go(&m->solver, m->hold, 0.5 * (from + to), &between);
+        nt_deform_point between = {0}, next = {0};
+        status = nt_deform_go(&m->solver, m->hold, 0.5 * (from + to), &between);
         if (status == NT_OK)
-            status = nt_yield_go(&m->solver, m->hold, to, &next);
+            status = nt_deform_go(&m->solver, m->hold, to, &next);
         if (status != NT_OK) { /* too far, as through where the bodies touch; a rim that no mesh resolves */
-            const int narrow = m->hold == NT_YIELD_CONTACT && from == 0.0 && failed < WIDENINGS;
+            const int narrow = m->hold == NT_DEFORM_CONTACT && from == 0.0 && failed < WIDENINGS;
             step = (narrow ? WIDER : NEARER) * fabs(to - from);
             if (step < least || ++failed > FAILURES)
                 return jumps_ahead(m) ? NT_E_NO_SOLUTION : status;
@@ -137,15 +137,15 @@ static nt_status march(maker *m, int part, double step)
                 return NT_E_NO_CONVERGENCE;
             continue;
         }
-        if (m->hold == NT_YIELD_GAP && !m->range->attracts &&
+        if (m->hold == NT_DEFORM_GAP && !m->range->attracts &&
             (next.centre <= 0.0 || between.centre <= 0.0)) { /* the bodies touch */
-            m->hold = NT_YIELD_CENTRE;
+            m->hold = NT_DEFORM_CENTRE;
             m->end = 0.0;
             step = m->last.centre;
             --m->table->count;
             return march(m, part, step);
         }
-        const nt_yield_node ends[2] = {m->table->node[m->table->count - 1], node_of(m, part, &next)};
+        const nt_deform_node ends[2] = {m->table->node[m->table->count - 1], node_of(m, part, &next)};
         if (!(ends[1].v > ends[0].v)) /* back through a fold */
             return NT_E_NO_CONVERGENCE;
         const double error = distance(m, ends, part, &between) / m->range->tolerance;
@@ -166,12 +166,12 @@ static nt_status march(maker *m, int part, double step)
 static nt_status end_at(maker *m, double centre)
 {
     const double pole = m->solver.sample->pole;
-    nt_yield_point point;
-    const nt_status status = nt_yield_go(&m->solver, NT_YIELD_CENTRE, centre, &point);
+    nt_deform_point point;
+    const nt_status status = nt_deform_go(&m->solver, NT_DEFORM_CENTRE, centre, &point);
     m->table->jumps = 1;
     m->table->touch = point.h;
     m->pull = fmax(fabs(point.F), fabs(point.k) * (centre - pole)); /* of laws that cancel, too */
-    m->hold = NT_YIELD_CENTRE;
+    m->hold = NT_DEFORM_CENTRE;
     m->end = centre + BEFORE_JUMP * (centre - pole);
     return status;
 }
@@ -188,7 +188,7 @@ static nt_status find_jump(maker *m)
 {
     const double pole = m->solver.sample->pole;
     double high = m->last.centre, low = high;
-    nt_yield_point point = m->last;
+    nt_deform_point point = m->last;
     while (point.slope > 0.0) {
         if (m->range->centre > 0.0 ? point.centre <= m->range->centre : point.h <= m->range->nearest)
             return end_at_centre(m);
@@ -196,13 +196,13 @@ static nt_status find_jump(maker *m)
         low = pole + SHORTER * (low - pole);
         if (low - pole < TOUCHING * m->solver.sample->length)
             return end_at(m, low);
-        const nt_status status = nt_yield_go(&m->solver, NT_YIELD_CENTRE, low, &point);
+        const nt_status status = nt_deform_go(&m->solver, NT_DEFORM_CENTRE, low, &point);
         if (status != NT_OK)
             return status;
     }
     for (int i = 0; i < 40; ++i) {
         const double middle = 0.5 * (low + high);
-        const nt_status status = nt_yield_go(&m->solver, NT_YIELD_CENTRE, middle, &point);
+        const nt_status status = nt_deform_go(&m->solver, NT_DEFORM_CENTRE, middle, &point);
         if (status != NT_OK)
             return status;
         *(point.slope > 0.0 ? &high : &low) = middle;
@@ -212,15 +212,15 @@ static nt_status find_jump(maker *m)
     m->table->jumps = 1;
     m->table->touch = point.h;
     m->pull = fabs(point.F);
-    m->hold = NT_YIELD_CENTRE;
+    m->hold = NT_DEFORM_CENTRE;
     m->end = high + BEFORE_JUMP * (high - pole);
     return NT_OK;
 }
 
 static nt_status begin(maker *m)
 {
-    const nt_status status = nt_yield_begin(&m->solver, m->solver.sample, m->range->farthest);
-    return status == NT_OK ? nt_yield_go(&m->solver, NT_YIELD_GAP, m->range->farthest, &m->last) : status;
+    const nt_status status = nt_deform_begin(&m->solver, m->solver.sample, m->range->farthest);
+    return status == NT_OK ? nt_deform_go(&m->solver, NT_DEFORM_GAP, m->range->farthest, &m->last) : status;
 }
 
 /* Where the pull at the jump is small beside the scale, by a mesh that resolves it: the place of the jump is known to
@@ -236,7 +236,7 @@ static nt_status find_jump_again(maker *m)
 static nt_status make_apart(maker *m, double length)
 {
     nt_status status = begin(m);
-    m->hold = NT_YIELD_GAP;
+    m->hold = NT_DEFORM_GAP;
     m->end = m->range->nearest;
     double step = FIRST_STEP * length;
     if (m->range->attracts && status == NT_OK) {
@@ -254,7 +254,7 @@ static nt_status make_apart(maker *m, double length)
 }
 
 /* U of each node; of a contact that holds it begins with `energy`. */
-static void integrate(nt_yield_table *table, double energy)
+static void integrate(nt_deform_table *table, double energy)
 {
     for (int i = 0; i < table->count; ++i) {
         const int part = part_of(table, i);
@@ -269,14 +269,14 @@ static void integrate(nt_yield_table *table, double energy)
     }
 }
 
-nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *sample, const nt_yield_range *range)
+nt_status nt_deform_table_make(nt_deform_table *table, const nt_deform_sample *sample, const nt_deform_range *range)
 {
-    static const nt_yield_table empty = {0};
+    static const nt_deform_table empty = {0};
     maker m = {.pull = INFINITY};
     m.table = table;
     m.range = range;
     m.solver.sample = sample;
-    m.solver.tolerance = MESH * range->tolerance * (range->stiffness ? NT_YIELD_STIFFER : 1.0);
+    m.solver.tolerance = MESH * range->tolerance * (range->stiffness ? NT_DEFORM_STIFFER : 1.0);
     m.solver.scale = range->scale;
     *table = empty;
     table->touch = -INFINITY;
@@ -284,9 +284,9 @@ nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *samp
     nt_status status = make_apart(&m, sample->length);
     table->apart = table->count;
     if (status == NT_OK && !table->jumps)
-        table->touch = range->attracts ? m.last.h : m.hold == NT_YIELD_CENTRE ? m.last.h : (double)-INFINITY;
-    if (status == NT_OK && !range->attracts && m.hold == NT_YIELD_CENTRE && !is_done(&m)) {
-        m.hold = NT_YIELD_CONTACT;
+        table->touch = range->attracts ? m.last.h : m.hold == NT_DEFORM_CENTRE ? m.last.h : (double)-INFINITY;
+    if (status == NT_OK && !range->attracts && m.hold == NT_DEFORM_CENTRE && !is_done(&m)) {
+        m.hold = NT_DEFORM_CONTACT;
         m.end = INFINITY;
         m.last.a = 0.0;
         status = march(&m, 1, FIRST_RIM * sqrt(2.0 * sample->radius * sample->length));
@@ -301,8 +301,8 @@ nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *samp
 
 static double gap_at(maker *m, double log_radius)
 {
-    nt_yield_point point;
-    return nt_yield_go(&m->solver, NT_YIELD_CONTACT, exp(log_radius), &point) == NT_OK ? point.h : (double)NAN;
+    nt_deform_point point;
+    return nt_deform_go(&m->solver, NT_DEFORM_CONTACT, exp(log_radius), &point) == NT_OK ? point.h : (double)NAN;
 }
 
 /* Between ln a of which the middle one is highest: by parabolas. */
@@ -359,29 +359,29 @@ static double find_release(maker *m, double radius)
 /* What the force does over the table is the energy of its ends, unless the mesh does not resolve the pressure. */
 static int is_resolved(const maker *m, double first, double last)
 {
-    const nt_yield_table *table = m->table;
-    const nt_yield_node *from = &table->node[table->apart], *to = &table->node[table->count - 1];
+    const nt_deform_table *table = m->table;
+    const nt_deform_node *from = &table->node[table->apart], *to = &table->node[table->count - 1];
     const double depth = to->v * to->v - from->v * from->v;
     const double most = fmax(fmax(fabs(from->F), fabs(to->F)), m->range->scale);
     return fabs((last - first) - (to->U - from->U)) <= RESOLVED * m->range->tolerance * most * depth;
 }
 
-nt_status nt_yield_table_hold(nt_yield_table *table, const nt_yield_sample *sample, const nt_yield_range *range,
-                              double radius)
+nt_status nt_deform_table_hold(nt_deform_table *table, const nt_deform_sample *sample, const nt_deform_range *range,
+                               double radius)
 {
-    maker m = {.table = table, .range = range, .hold = NT_YIELD_CONTACT, .end = INFINITY};
+    maker m = {.table = table, .range = range, .hold = NT_DEFORM_CONTACT, .end = INFINITY};
     table->apart = table->count;
-    nt_status status = nt_yield_begin_contact(&m.solver, sample, radius);
+    nt_status status = nt_deform_begin_contact(&m.solver, sample, radius);
     const double fold = status == NT_OK ? find_release(&m, radius) : (double)NAN;
     if (isnan(fold))
         return NT_E_NO_CONVERGENCE;
     table->holds = 1;
-    status = nt_yield_go(&m.solver, NT_YIELD_CONTACT, exp(fold + BEYOND), &m.last);
-    const double first = nt_yield_energy_in_contact(&m.solver);
+    status = nt_deform_go(&m.solver, NT_DEFORM_CONTACT, exp(fold + BEYOND), &m.last);
+    const double first = nt_deform_energy_in_contact(&m.solver);
     if (status == NT_OK)
         status = march(&m, 1, BEYOND * exp(fold));
     table->last = m.last.h;
     integrate(table, first);
-    return status == NT_OK && !is_resolved(&m, first, nt_yield_energy_in_contact(&m.solver)) ? NT_E_NO_CONVERGENCE
-                                                                                             : status;
+    return status == NT_OK && !is_resolved(&m, first, nt_deform_energy_in_contact(&m.solver)) ? NT_E_NO_CONVERGENCE
+                                                                                              : status;
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Soft samples that yield over relief: each place against a flat of its radius by solvers that share nothing with
+"""Soft samples that deform over relief: each place against a flat of its radius by solvers that share nothing with
 plans, one potential, and what is refused."""
 
 from __future__ import annotations
@@ -48,15 +48,15 @@ def test_a_dry_sample_is_that_of_each_radius(young: float) -> None:
     scene, rng = dry(young), np.random.default_rng(1)
     body = cycles.bumpy(scene, 3)
     plan = scene.plan(0.01, surface=body)
-    assert plan.explain()["yields"]
+    assert plan.explain()["deforms"]
     assert plan.bound <= 0.01
     for place in places_of(body, rng, 3):
         flat = scene.copy()
         flat.tip.radius = place[3]
-        capture = reference.yielded_scene(flat, 1e-5).capture_gap
+        capture = reference.deformed_scene(flat, 1e-5).capture_gap
         gaps = capture * np.array([8.0, 3.0, 1.5, 1.05, 0.95, 0.3, 0.0])
         for history in ("approach", "retract"):
-            true = reference.yielded_scene(flat, 1e-5).force(gaps, history)
+            true = reference.deformed_scene(flat, 1e-5).force(gaps, history)
             found = at(nt.Interaction(plan, history), place, gaps).Fz
             assert np.all(np.abs(found - true) <= plan.bound * np.maximum(np.abs(true), plan.scale))
 
@@ -71,7 +71,7 @@ def test_a_law_that_pushes_is_that_of_each_radius(young: float, accuracy: float,
     scene.range.maximum_load = 1e-10
     body = cycles.bumpy(scene, 4)
     plan = scene.plan(accuracy, quantity=quantity, surface=body)
-    assert plan.explain()["yields"]
+    assert plan.explain()["deforms"]
 
     def law(g: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         p = energy / length * np.exp(-g / length)
@@ -97,7 +97,7 @@ def test_a_brush_that_is_touched_is_that_of_each_radius() -> None:
         flat = scene.copy()
         flat.tip.radius = place[3]
         gaps = np.array([3e-9, 1e-9, 0.1e-9, -0.2e-9, -0.5e-9])
-        found, touch = reference.yielded(flat, gaps)
+        found, touch = reference.deformed(flat, gaps)
         value = at(nt.Interaction(plan, "approach"), place, gaps)
         true = np.array([here.contact_radius for here in found])
         away = np.abs(gaps - (touch or 1.0)) > plan.fold_distance_m
@@ -113,7 +113,7 @@ def test_the_force_is_minus_the_gradient_of_one_potential(scene: nt.Scene) -> No
     """By differences of fourth order over a ten-thousandth of the radius; 1e10 is a sample that does not jump."""
     body = cycles.bumpy(scene, 3) if scene.sample.youngs_modulus < 1e9 else gentle(scene)
     plan, radius, rng = scene.plan(0.01, surface=body), scene.tip.radius, np.random.default_rng(4)
-    assert plan.explain()["yields"]
+    assert plan.explain()["deforms"]
     for history in ("approach", "retract"):
         contact = nt.Interaction(plan, history)
         for gap in (4e-9, 1e-9, -0.05e-9, -0.2e-9):
@@ -151,14 +151,14 @@ def test_what_is_planned_flat_is_planned_over_relief(young: float) -> None:
         for body in (surface.grating(pixels=64), surface.dots(pixels=64)):
             plan = scene.plan(0.01, surface=nt.Surface.touched_by(scene, body))
             assert plan.bound <= 0.01
-            assert not any("yields" in warning.text for warning in plan.warnings)
+            assert not any("deforms" in warning.text for warning in plan.warnings)
 
 
 def test_the_refusal_names_the_spread_of_radii() -> None:
     """At 3.25 GPa blunt places jump to the tip and sharp ones do not; on gentle waves all do."""
     scene = dry(3.25e9)
     with pytest.raises(
-        InvalidValue, match=r"surface \(the soft sample yields otherwise at the effective radius"
+        InvalidValue, match=r"surface \(the soft sample deforms otherwise at the effective radius"
     ) as said:
         scene.plan(0.01, surface=cycles.bumpy(scene, 3))
     assert "youngs_modulus" not in str(said.value)

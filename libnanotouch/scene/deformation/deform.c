@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The plan of a sample that yields to all forces together: the pressures of the terms summed, solved when the plan is
- * made, run from a table (docs/yielding.md). */
+ * The plan of a sample that deforms under all forces together: the pressures of the terms summed, solved when the plan
+ * is made, run from a table (docs/deformation.md). */
 #include <math.h>
 
+#include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
-#include "scene/yielding/yield.h"
 
 #define SEAM 0.1           /* of the tolerance: where the table begins */
 #define PARTS 2.5          /* a table's bound over its tolerance */
@@ -16,7 +16,7 @@
 #define PLENTY 10.0   /* times the finest, then */
 #define INSIDE 0.9    /* of what is left, in a second attempt */
 #define LEAVES 0.7    /* of the demand; the rest is for the form of contact */
-#define WEAKER 0.7    /* of the pull-off of rigid bodies: that of a sample that yields, at least */
+#define WEAKER 0.7    /* of the pull-off of rigid bodies: that of a sample that deforms, at least */
 #define FLAT 10.0     /* tables of a stiffness are coarser by */
 #define STIFF 0.3     /* of the tolerance: the gap of a jump, where that of a stiffness was sought */
 #define RELEASED 1e-4 /* of the release gap: two solvers agree on it to 3e-5, whatever is demanded */
@@ -35,10 +35,10 @@ static int adheres(const nt_plan *plan)
 static double where_rigid(const nt_plan *plan, double hold, double error)
 {
     double low = fmax(hold, nt_elastic_hold(plan)) * (1.0 + 1e-12),
-           high = NT_YIELD_FARTHEST; /* held, they have no length */
+           high = NT_DEFORM_FARTHEST; /* held, they have no length */
     nt_elastic_sum s = nt_elastic_sum_at(plan, low);
     const double length = s.here_F / s.here_k;
-    for (double gap = NT_YIELD_FARTHEST; gap > low; gap = nt_elastic_nearer(plan, gap)) {
+    for (double gap = NT_DEFORM_FARTHEST; gap > low; gap = nt_elastic_nearer(plan, gap)) {
         s = nt_elastic_sum_at(plan, gap);
         if (nt_elastic_error(plan, &s) > error) {
             low = gap;
@@ -89,10 +89,10 @@ static double other_errors(const nt_plan *plan, double nearest, int felt)
 /* What the plan says of its terms. */
 static void describe(nt_plan *plan, double error)
 {
-    const nt_term_form *all = nt_term_form_of(plan, NT_PLAN_CONTACT, NT_FORM_YIELDING); /* computed as one */
-    plan->cost = all->cost + nt_plan_cost_of_place(plan, NT_FORM_YIELDING, 0);
-    plan->latency = all->latency + nt_plan_cost_of_place(plan, NT_FORM_YIELDING, 1);
-    plan->terms[NT_PLAN_CONTACT].form = NT_FORM_YIELDING;
+    const nt_term_form *all = nt_term_form_of(plan, NT_PLAN_CONTACT, NT_FORM_DEFORMED); /* computed as one */
+    plan->cost = all->cost + nt_plan_cost_of_place(plan, NT_FORM_DEFORMED, 0);
+    plan->latency = all->latency + nt_plan_cost_of_place(plan, NT_FORM_DEFORMED, 1);
+    plan->terms[NT_PLAN_CONTACT].form = NT_FORM_DEFORMED;
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
         const nt_term_row *row = nt_term_rows[term];
         nt_plan_term *t = &plan->terms[term];
@@ -128,12 +128,12 @@ static nt_status check(const nt_plan *plan, const nt_scene *scene, nt_problem *p
 static double held_pull(const nt_plan *plan)
 {
     double lost = 0.0;
-    if (isinf(plan->yield.touch) || adheres(plan))
+    if (isinf(plan->deformation.touch) || adheres(plan))
         return lost;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         const nt_form form = nt_plan_full_form(plan, term);
-        lost +=
-            fabs(nt_plan_law_eval(plan, term, form, 0.0).F - nt_plan_law_eval(plan, term, form, plan->yield.hold).F);
+        lost += fabs(nt_plan_law_eval(plan, term, form, 0.0).F -
+                     nt_plan_law_eval(plan, term, form, plan->deformation.hold).F);
     }
     return lost;
 }
@@ -150,29 +150,29 @@ static void turn_on(nt_plan *plan)
     }
 }
 
-static nt_status make(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const nt_yield_wanted *of)
+static nt_status make(nt_plan *plan, const nt_scene *scene, const nt_deform_terms *in, const nt_deform_wanted *of)
 {
     const double tolerance = of->tolerance;
     const int sticks = adheres(plan), surrounded = sticks && nt_plan_is_surrounded(plan, scene);
     const double least = scene->range.minimum_gap;
     const double farthest = where_rigid(plan, sticks ? plan->capture_gap : in->hold, SEAM * tolerance);
-    const nt_yield_sample sample = nt_yield_sample_of(in, scene, farthest);
-    const nt_yield_range range = {.farthest = farthest - in->hold,
-                                  .nearest = sticks && !surrounded ? fmax(plan->capture_gap, least) : least - in->hold,
-                                  .centre = surrounded ? plan->length : 0.0,
-                                  .load = sticks && !surrounded ? (double)INFINITY : of->load,
-                                  .tolerance = tolerance,
-                                  .scale =
-                                      (sticks ? WEAKER : 1.0) * nt_plan_force_scale(plan, scene->range.maximum_load),
-                                  .attracts = sticks,
-                                  .stiffness = plan->demand.quantity == NT_QUANTITY_STIFFNESS,
-                                  .stiffness_scale = plan->scale,
-                                  .radius_scale = of->radius_scale,
-                                  .touches = of->touches};
-    const nt_status status = nt_yield_table_make(&plan->yield, &sample, &range);
+    const nt_deform_sample sample = nt_deform_sample_of(in, scene, farthest);
+    const nt_deform_range range = {.farthest = farthest - in->hold,
+                                   .nearest = sticks && !surrounded ? fmax(plan->capture_gap, least) : least - in->hold,
+                                   .centre = surrounded ? plan->length : 0.0,
+                                   .load = sticks && !surrounded ? (double)INFINITY : of->load,
+                                   .tolerance = tolerance,
+                                   .scale =
+                                       (sticks ? WEAKER : 1.0) * nt_plan_force_scale(plan, scene->range.maximum_load),
+                                   .attracts = sticks,
+                                   .stiffness = plan->demand.quantity == NT_QUANTITY_STIFFNESS,
+                                   .stiffness_scale = plan->scale,
+                                   .radius_scale = of->radius_scale,
+                                   .touches = of->touches};
+    const nt_status status = nt_deform_table_make(&plan->deformation, &sample, &range);
     if (status != NT_OK || !surrounded)
         return status;
-    return nt_plan_yield_hold(plan, scene, &range) == NT_OK ? NT_OK : NT_E_RANGE; /* no finer one would do */
+    return nt_plan_deform_hold(plan, scene, &range) == NT_OK ? NT_OK : NT_E_RANGE; /* no finer one would do */
 }
 
 static int is_same(double a, double b)
@@ -181,18 +181,18 @@ static int is_same(double a, double b)
 }
 
 /* Makes a table, unless it is known to come to no end. */
-static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const nt_yield_wanted *of)
+static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_deform_terms *in, const nt_deform_wanted *of)
 {
     const int surrounded = adheres(plan) && nt_plan_is_surrounded(plan, scene);
-    nt_yield_tried *tried = plan->ratio == 1.0 && !of->touches ? of->tried : NULL;
+    nt_deform_tried *tried = plan->ratio == 1.0 && !of->touches ? of->tried : NULL;
     for (int i = 0; tried && i < tried->count; ++i) {
-        const nt_yield_end *end = &tried->end[i];
+        const nt_deform_end *end = &tried->end[i];
         if (is_same(end->tolerance, of->tolerance) && is_same(end->scale, plan->scale) && end->surrounded == surrounded)
             return end->status;
     }
     const nt_status status = make(plan, scene, in, of);
-    if (status != NT_OK && tried && tried->count < NT_YIELD_TRIED)
-        tried->end[tried->count++] = (nt_yield_end){of->tolerance, plan->scale, surrounded, status};
+    if (status != NT_OK && tried && tried->count < NT_DEFORM_TRIED)
+        tried->end[tried->count++] = (nt_deform_end){of->tolerance, plan->scale, surrounded, status};
     return status;
 }
 
@@ -208,14 +208,14 @@ static double rung_below(double tolerance, double finest)
 }
 
 /* With a tolerance, or finer, where Newton or the mesh do not come to an end. */
-nt_status nt_plan_yield_table(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of)
+nt_status nt_plan_deform_table(nt_plan *plan, const nt_scene *scene, const nt_deform_wanted *of)
 {
     const double tolerance = of->tolerance;
-    const nt_yield_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
+    const nt_deform_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
     nt_status status = NT_E_NO_CONVERGENCE;
     if (adheres(plan)) /* inside the range of adhesion, too */
         nt_plan_prepare_laws(plan, scene, 0.0);
-    nt_yield_wanted finer = *of;
+    nt_deform_wanted finer = *of;
     for (int i = 0, last = 0; status == NT_E_NO_CONVERGENCE && !last; ++i) {
         status = table_of(plan, scene, &in, &finer);
         const int attempts = plan->ratio != 1.0 ? OF_EACH_RADIUS
@@ -225,24 +225,26 @@ nt_status nt_plan_yield_table(nt_plan *plan, const nt_scene *scene, const nt_yie
         finer.tolerance = fmax(FINER * finer.tolerance, of->finest);
     }
     turn_on(plan);
-    plan->yield.hold = in.hold;
-    plan->yield.ratio = plan->ratio;
-    plan->yield.jump_error = tolerance * fmax(isinf(plan->yield.touch) ? 0.0 : fabs(plan->yield.touch), plan->length);
+    plan->deformation.hold = in.hold;
+    plan->deformation.ratio = plan->ratio;
+    plan->deformation.jump_error =
+        tolerance * fmax(isinf(plan->deformation.touch) ? 0.0 : fabs(plan->deformation.touch), plan->length);
     if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
-        plan->yield.jump_error *= STIFF;
-    if (plan->yield.holds)
-        plan->yield.jump_error = PARTS * plan->yield.jump_error + RELEASED * fabs(plan->yield.release);
+        plan->deformation.jump_error *= STIFF;
+    if (plan->deformation.holds)
+        plan->deformation.jump_error =
+            PARTS * plan->deformation.jump_error + RELEASED * fabs(plan->deformation.release);
     if (status == NT_OK && held_pull(plan) > fmax(plan->demand.relative_accuracy, tolerance) * plan->scale)
         status = NT_E_NO_CONVERGENCE;
     return status;
 }
 
-nt_status nt_plan_yield_compose(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
+nt_status nt_plan_deform_compose(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
 {
-    nt_yield_join(plan, &plan->yield);
+    nt_deform_join(plan, &plan->deformation);
     if (adheres(plan))
-        return nt_plan_yield_contact(plan, scene, work_of_adhesion);
-    nt_yield_facts(plan, scene->range.maximum_load);
+        return nt_plan_deform_contact(plan, scene, work_of_adhesion);
+    nt_deform_facts(plan, scene->range.maximum_load);
     return NT_OK;
 }
 
@@ -250,17 +252,17 @@ nt_status nt_plan_yield_compose(nt_plan *plan, const nt_scene *scene, double wor
 static nt_status compose(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
 {
     const double budget = plan->demand.budget;
-    nt_yield_join(plan, &plan->yield);
+    nt_deform_join(plan, &plan->deformation);
     if (adheres(plan))
-        return nt_plan_yield_adhere(plan, scene, error, problem);
+        return nt_plan_deform_adhere(plan, scene, error, problem);
     describe(plan, error);
     if (budget > 0.0 && plan->cost > budget * NT_BUDGET_ROUNDS)
         return refuse(problem, (nt_problem){"demand.budget", "", budget, plan->cost, 1e9});
-    nt_yield_facts(plan, scene->range.maximum_load);
+    nt_deform_facts(plan, scene->range.maximum_load);
     return NT_OK;
 }
 
-/* A jump, or a pressure that no mesh resolves: a stiffer sample would not yield. */
+/* A jump, or a pressure that no mesh resolves: a stiffer sample would not deform. */
 static nt_status refuse_modulus(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     const double E = scene->sample.youngs_modulus;
@@ -271,40 +273,40 @@ static nt_status refuse_modulus(const nt_plan *plan, const nt_scene *scene, nt_p
 /* The finest tolerance that was measured: where a law ends, as a brush, the mesh only nearly knows where. */
 static double finest_of(const nt_plan *plan, const nt_scene *scene)
 {
-    const nt_yield_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
-    const nt_yield_sample sample = nt_yield_sample_of(&in, scene, NT_YIELD_FARTHEST);
+    const nt_deform_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
+    const nt_deform_sample sample = nt_deform_sample_of(&in, scene, NT_DEFORM_FARTHEST);
     const double finest = sample.end_count > 0 ? ENDED * FINEST : FINEST;
     return plan->demand.quantity == NT_QUANTITY_STIFFNESS ? FLAT * FINEST : finest;
 }
 
 /* Of the folds: where the surface jumps is known to a distance. */
-static double error_of_folds(const nt_plan *plan, const nt_yield_wanted *of)
+static double error_of_folds(const nt_plan *plan, const nt_deform_wanted *of)
 {
-    if (of->quantity != NT_QUANTITY_FOLDS || !plan->yield.jumps)
+    if (of->quantity != NT_QUANTITY_FOLDS || !plan->deformation.jumps)
         return 0.0;
-    return plan->yield.jump_error / plan->scale;
+    return plan->deformation.jump_error / plan->scale;
 }
 
 /* Of a plan over relief: its places, too. */
-static void take_worst(nt_plan *plan, const nt_yield_worst *worst)
+static void take_worst(nt_plan *plan, const nt_deform_worst *worst)
 {
-    plan->yield.jump_error += worst->moved;
+    plan->deformation.jump_error += worst->moved;
     plan->largest_pull_off_force = fmax(plan->largest_pull_off_force, worst->pull_off_force);
     plan->minimum_spring = fmax(plan->minimum_spring, worst->minimum_spring);
     plan->maximum_stiffness = fmax(plan->maximum_stiffness, worst->maximum_stiffness);
 }
 
 /* With one tolerance; `error`: of all that is in no table, as a share of the demand. */
-static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of, double error,
-                              nt_problem *problem)
+static nt_status deform_within(nt_plan *plan, const nt_scene *scene, const nt_deform_wanted *of, double error,
+                               nt_problem *problem)
 {
     nt_problem reason = {0};
-    nt_yield_worst worst = {0};
+    nt_deform_worst worst = {0};
     plan->relief.count = 0;
-    if (nt_plan_yield_table(plan, scene, of) != NT_OK)
+    if (nt_plan_deform_table(plan, scene, of) != NT_OK)
         return refuse_modulus(plan, scene, problem);
     const double most = BETWEEN / (1.0 - BETWEEN) * PARTS * of->tolerance;
-    if (takes_relief(plan) && nt_plan_yield_over(plan, scene, of, most, &worst, &reason) != NT_OK)
+    if (takes_relief(plan) && nt_plan_deform_over(plan, scene, of, most, &worst, &reason) != NT_OK)
         return reason.field ? refuse(problem, reason) : refuse_modulus(plan, scene, problem);
     plan->demand.quantity = of->quantity;
     const nt_status status = compose(plan, scene, error + PARTS * of->tolerance + worst.error, &reason);
@@ -317,7 +319,7 @@ static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const nt_yie
 }
 
 /* Tables are of forces, whatever is demanded. */
-static nt_status yield(nt_plan *plan, const nt_scene *scene, nt_yield_wanted *of, nt_problem *problem)
+static nt_status deform(nt_plan *plan, const nt_scene *scene, nt_deform_wanted *of, nt_problem *problem)
 {
     const double nearest = fmax(scene->range.minimum_gap, 0.0), demanded = plan->demand.relative_accuracy;
     const int felt = of->quantity == NT_QUANTITY_FORCE || of->quantity == NT_QUANTITY_STIFFNESS;
@@ -328,29 +330,29 @@ static nt_status yield(nt_plan *plan, const nt_scene *scene, nt_yield_wanted *of
     const double alone = takes_relief(plan) ? 1.0 - BETWEEN : 1.0;
     const double share = alone * (adheres(plan) && !surrounded ? LEAVES : 1.0);
     const double spread = spread_of_radii(plan);
-    of->load = NT_YIELD_DEEPER * scene->range.maximum_load;
+    of->load = NT_DEFORM_DEEPER * scene->range.maximum_load;
     of->finest = share * finest;
     of->tolerance = rung_below(share * left, of->finest);
     if (!(left >= finest) && others >= WORST && others - spread < demanded)
-        return refuse(problem, (nt_problem){NT_YIELD_SPREAD, "m", plan->radii->maximum, plan->contact.radius,
+        return refuse(problem, (nt_problem){NT_DEFORM_SPREAD, "m", plan->radii->maximum, plan->contact.radius,
                                             plan->contact.radius * (1.0 + demanded)});
     if (!(left >= finest))
         return refuse(problem, (nt_problem){"demand.relative_accuracy", "", demanded,
                                             (others + PARTS * finest) * (1.0 + 1e-9), 0.5});
-    nt_status status = yield_within(plan, scene, of, others, problem);
+    nt_status status = deform_within(plan, scene, of, others, problem);
     const double error = plan->bound.force_error - others;
     if (status != NT_OK || !(demanded > 0.0) || others + error <= demanded)
         return status;
     of->tolerance = rung_below(of->tolerance * INSIDE * (demanded - others) / error, of->finest); /* of folds */
     plan->demand.quantity = NT_QUANTITY_FORCE;
     plan->scale = nt_plan_scale_of(plan, scene->range.maximum_load);
-    return yield_within(plan, scene, of, others, problem);
+    return deform_within(plan, scene, of, others, problem);
 }
 
-nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tried, nt_problem *problem)
+nt_status nt_plan_deform(nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried, nt_problem *problem)
 {
     const double quantity = plan->demand.quantity, load = scene->range.maximum_load;
-    nt_yield_wanted of = {.quantity = (nt_quantity)(int)quantity, .tried = tried};
+    nt_deform_wanted of = {.quantity = (nt_quantity)(int)quantity, .tried = tried};
     nt_status status = check(plan, scene, problem);
     if (status != NT_OK)
         return status;
@@ -361,12 +363,12 @@ nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tr
         plan->demand.quantity = NT_QUANTITY_FORCE;
         plan->scale = nt_plan_scale_of(plan, load);
     }
-    status = yield(plan, scene, &of, problem);
+    status = deform(plan, scene, &of, problem);
     plan->demand.quantity = quantity;
     if (of.quantity == NT_QUANTITY_RADIUS || of.quantity == NT_QUANTITY_FOLDS)
         plan->scale = of.quantity == NT_QUANTITY_RADIUS ? of.radius_scale : nt_plan_scale_of(plan, load);
     if (status != NT_OK)
-        plan->yield.count = plan->yield.holds = plan->relief.count =
+        plan->deformation.count = plan->deformation.holds = plan->relief.count =
             0; /* no table: the facts are those of the laws again */
     return status;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random soft scenes, two of three with adhesion, dry or in a liquid: is a planned force, stiffness or contact radius
-ever farther from the self-consistent half-space or layer than the plan says, whether its sample yields or adds on the
+ever farther from the self-consistent half-space or layer than the plan says, whether its sample deforms or adds on the
 undeformed gap? Where the surface jumps and where contact lets go is compared, too.
 
 ``--relief``: over random bumps, each place against a flat of its effective radius.
@@ -76,7 +76,7 @@ def compare_sticky(rng: np.random.Generator) -> tuple[str, float, float]:
         return f"sticky, refused: {str(refusal).split(' = ')[0]}", 0.0, 0.0
     facts = plan.explain()
     try:
-        truth = reference.yielded_scene(scene, 1e-5)
+        truth = reference.deformed_scene(scene, 1e-5)
         capture, release = truth.capture_gap, facts["release_gap"]
         near = np.array([8.0, 3.0, 1.5, 1.1]) * capture
         error = 0.0
@@ -84,7 +84,7 @@ def compare_sticky(rng: np.random.Generator) -> tuple[str, float, float]:
             gaps = np.sort(np.concatenate([near if history == "approach" else [0.9 * release], [0.9 * capture, 0.0]]))[
                 ::-1
             ]
-            true = reference.yielded_scene(scene, 1e-5).force(gaps, history) if facts["yields"] else None
+            true = reference.deformed_scene(scene, 1e-5).force(gaps, history) if facts["deforms"] else None
             if true is None:  # contact of stiff samples is a law of its own: beside it alone
                 gaps = gaps[gaps > capture] if history == "approach" else gaps[:0]
                 true = truth.force(gaps, history)
@@ -93,9 +93,9 @@ def compare_sticky(rng: np.random.Generator) -> tuple[str, float, float]:
             error = float(np.maximum(error, np.max(share, initial=0.0)))
     except (SolverError, np.linalg.LinAlgError):
         return "sticky: reference failed", 0.0, plan.bound
-    if facts["yields"] and abs(facts["capture_gap"] - capture) > plan.fold_shift_m + 1e-9 * capture:
+    if facts["deforms"] and abs(facts["capture_gap"] - capture) > plan.fold_shift_m + 1e-9 * capture:
         error = np.inf
-    kind = "rigid" if not facts["yields"] else "jumps" if truth.jumps else "yields"
+    kind = "rigid" if not facts["deforms"] else "jumps" if truth.jumps else "deforms"
     return f"sticky, {kind}", error, plan.bound
 
 
@@ -140,19 +140,19 @@ def compare_wet(rng: np.random.Generator, made: Callable[[np.random.Generator], 
     except Error as refusal:
         return f"around, refused: {str(refusal).split(' = ')[0]}", 0.0, 0.0
     facts = plan.explain()
-    alone = facts["yields"] and facts["terms"][0]["form"] != "yielding" and scene.adhesion.hamaker_constant > 0.0
+    alone = facts["deforms"] and facts["terms"][0]["form"] != "deformed" and scene.adhesion.hamaker_constant > 0.0
     if alone and facts["capture_gap"] <= 1.001 * 9.0 * np.sqrt(3.0) / 16.0 * scene.adhesion.equilibrium_distance:
         return "around: tail goes on into contact, which the reference does not know", 0.0, plan.bound
     if facts["lambda"] < 1.0:  # is let go with no radius of contact, which the reference does not know
         return "around: too hard for the reference", 0.0, plan.bound
     try:
-        truth = reference.yielded_scene(scene, 1e-5)
+        truth = reference.deformed_scene(scene, 1e-5)
         around = truth.surrounded
         assert around is not None
         assert around.release is not None
         release, deepest = around.release.gap, -0.9 * facts["largest_indentation"]
         off = max(abs(facts["release_gap"] - release), abs(facts["capture_gap"] - truth.capture_gap))
-        kind = "around, yields" if facts["yields"] else "around, rigid"
+        kind = "around, deforms" if facts["deforms"] else "around, rigid"
         if off > plan.fold_shift_m + 1e-9 * abs(release):
             return f"{kind}, folds", np.inf, plan.bound
         if quantity == "folds":
@@ -183,10 +183,10 @@ def compare(seed: int, count: int = 6) -> tuple[str, float, float]:
     except Error as refusal:
         return f"refused: {str(refusal).split(' = ')[0]}", 0.0, 0.0
     facts = plan.explain()
-    kind = "yields" if facts["yields"] else "rigid"
+    kind = "deforms" if facts["deforms"] else "rigid"
     gaps = gaps_of(plan, scene, rng, count)
     try:
-        truth, touch = reference.yielded(scene, gaps)
+        truth, touch = reference.deformed(scene, gaps)
     except (SolverError, np.linalg.LinAlgError):
         return f"{kind}: reference failed", 0.0, plan.bound
     value = plan.run(gaps)
@@ -215,7 +215,7 @@ def compare_over(seed: int) -> tuple[str, float, float]:
         except Error:
             flat = "flat, too"
         return f"refused {flat}: {str(refusal).split(' = ')[0][:60]}", 0.0, 0.0
-    if not plan.explain()["yields"]:
+    if not plan.explain()["deforms"]:
         return "rigid over relief: refused no more", 0.0, plan.bound
     error, kind = 0.0, "dry relief" if sticks else "relief"
     for _ in range(2):
@@ -234,12 +234,12 @@ def error_at(plan: nt.Plan, scene: nt.Scene, rng: np.random.Generator, place: tu
     """Of the force at a place (x, y, height), whose flat is `scene`."""
     x, y, z = place
     if scene.adhesion.work_of_adhesion > 0.0:
-        capture = reference.yielded_scene(scene, 1e-5).capture_gap
+        capture = reference.deformed_scene(scene, 1e-5).capture_gap
         gaps = capture * np.array([8.0, 3.0, 1.5, 1.1, 0.9, 0.0])
-        true = reference.yielded_scene(scene, 1e-5).force(gaps, "approach")
+        true = reference.deformed_scene(scene, 1e-5).force(gaps, "approach")
     else:
         gaps = gaps_of(scene.plan(0.1), scene, rng, 4)
-        true = np.array([here.force for here in reference.yielded(scene, gaps)[0]])
+        true = np.array([here.force for here in reference.deformed(scene, gaps)[0]])
         true[true > scene.range.maximum_load] = np.nan  # beyond what is planned
     found = nt.Interaction(plan, "approach").eval(np.column_stack([0.0 * gaps + x, 0.0 * gaps + y, z + gaps])).Fz
     error = np.abs(found - true) / np.maximum(np.abs(true), plan.scale)

@@ -18,7 +18,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import Scene, reference
-from nanotouch.reference import Yielding
+from nanotouch.reference import Deformation
 
 R, E, A = 10e-6, 1e9, 1e-19
 """radius, modulus E*, Hamaker constant, of the size of Attard and Parker's examples"""
@@ -31,7 +31,7 @@ def van_der_waals() -> reference.Pressure:
 @pytest.mark.parametrize("gap", [10e-9, 20e-9, 40e-9])
 def test_displacement_prior_to_contact_by_van_der_waals(gap: float) -> None:
     """u(0) = (2/E*) Int p dr of the undeformed gap: -A sqrt(2 R)/(16 E* h^(5/2)). It errs by its own square."""
-    found = Yielding(van_der_waals(), R, E).at(gap)
+    found = Deformation(van_der_waals(), R, E).at(gap)
     expected = -A * math.sqrt(2.0 * R) / (16.0 * E * gap**2.5)
     assert found.displacement == pytest.approx(expected, rel=4.0 * abs(expected) / gap + 1e-5)
     assert found.force == pytest.approx(-A * R / (6.0 * gap**2), rel=8.0 * abs(expected) / gap + 1e-5)
@@ -41,7 +41,7 @@ def test_displacement_prior_to_contact_by_van_der_waals(gap: float) -> None:
 def test_displacement_prior_to_contact_by_an_exponential(gap: float) -> None:
     """The same integral: u(0) = P sqrt(2 pi R l) e^(-h/l)/E*."""
     pressure, length = 1e7, 1e-9
-    found = Yielding(reference.exponential(pressure, length), 1e-6, 1e11).at(gap)
+    found = Deformation(reference.exponential(pressure, length), 1e-6, 1e11).at(gap)
     expected = pressure * math.sqrt(2.0 * math.pi * 1e-6 * length) * math.exp(-gap / length) / 1e11
     assert found.displacement == pytest.approx(expected, rel=3.0 * expected / length + 1e-6)
 
@@ -50,7 +50,7 @@ def test_displacement_prior_to_contact_by_an_exponential(gap: float) -> None:
 def test_hertz_is_the_limit_of_a_short_ranged_repulsion(load: float) -> None:
     """At one load the tip goes as deep as Hertz', less the gap that is left, which is of the order of the range."""
     modulus, length = 1e9, 0.1e-9
-    found = Yielding(reference.exponential(1e9, length), 1e-6, modulus).at_force(load, 5e-9)
+    found = Deformation(reference.exponential(1e9, length), 1e-6, modulus).at_force(load, 5e-9)
     hertz = (9.0 * load**2 / (16.0 * modulus**2 * 1e-6)) ** (1.0 / 3.0)
     assert abs(-found.gap - hertz) < 4.0 * length
     assert -found.gap == pytest.approx(hertz, rel=4.0 * length / hertz)
@@ -96,8 +96,8 @@ def test_the_attracted_surface_jumps_where_the_rigid_one_would_still_hold(tabor:
     w, z0, radius = 0.05, 0.3e-9, 100e-9
     modulus = math.sqrt(radius * w**2 / (tabor * z0) ** 3)
     law = reference.power(-16.0 * math.pi * w * z0**2 / (6.0 * math.pi), 3.0)
-    jump = Yielding(law, radius, modulus).jump_in(0.5 * z0, 40.0 * z0)
-    half = Yielding(law, radius, 2.0**3.5 * modulus).jump_in(0.2 * z0, 40.0 * z0)
+    jump = Deformation(law, radius, modulus).jump_in(0.5 * z0, 40.0 * z0)
+    half = Deformation(law, radius, 2.0**3.5 * modulus).jump_in(0.2 * z0, 40.0 * z0)
     assert jump.gap / half.gap == pytest.approx(2.0, rel=1e-3)  # the one group
     assert jump.gap > z0 * tabor ** (3.0 / 7.0) * 2.5
     assert jump.force < -16.0 * math.pi * w * z0**2 * radius / (6.0 * jump.gap**2)  # it pulls more than a rigid one

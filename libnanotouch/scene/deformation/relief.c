@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A sample that yields over a surface: tables of some effective radii, and between them cubics of ln R.
+ * A sample that deforms over a surface: tables of some effective radii, and between them cubics of ln R.
  *
  *     U(h, R) = R Sum w_i(ln R) U_i(h - s(R) + s_i)/R_i        s(R) = Sum w_i(ln R) s_i
  *
@@ -8,7 +8,7 @@
  * from there, all is smooth: rigid laws grow as R, and those of one exponential are one curve of h - l/2 ln R. */
 #include <math.h>
 
-#include "scene/yielding/yield.h"
+#include "scene/deformation/deform.h"
 
 enum { POINTS = 4 };
 
@@ -28,7 +28,7 @@ static void fold_back(double weight[POINTS], int outer, int inwards)
     weight[outer + 3 * inwards] += w;
 }
 
-static mix mix_of(const nt_yield_relief *relief, double radius)
+static mix mix_of(const nt_deform_relief *relief, double radius)
 {
     const double at = log(radius / relief->first) / relief->step;
     const int last = relief->count - 2, cell = (int)fmin(fmax(at, 0.0), last);
@@ -54,7 +54,7 @@ static mix mix_of(const nt_yield_relief *relief, double radius)
 /* What stands at one gap in all tables: where the surface jumps or touches, or where contact lets go. */
 typedef enum mark { NOTHING, TOUCH, RELEASE, SHARE } mark;
 
-static double mark_of(const nt_yield_table *table, mark which)
+static double mark_of(const nt_deform_table *table, mark which)
 {
     switch (which) {
     case TOUCH:
@@ -69,7 +69,7 @@ static double mark_of(const nt_yield_table *table, mark which)
 }
 
 /* That of a radius; *slope (NULL allowed): over ln R. */
-static double mixed(const nt_yield_relief *relief, const mix *m, mark which, double *slope)
+static double mixed(const nt_deform_relief *relief, const mix *m, mark which, double *slope)
 {
     double sum = 0.0, rise = 0.0;
     for (int i = 0; i < POINTS; ++i)
@@ -83,16 +83,16 @@ static double mixed(const nt_yield_relief *relief, const mix *m, mark which, dou
     return sum;
 }
 
-static mark mark_for(const nt_yield_table *table, int attached)
+static mark mark_for(const nt_deform_table *table, int attached)
 {
     if (attached && table->holds)
         return RELEASE;
     return isinf(table->touch) || (attached && table->jumps) ? NOTHING : TOUCH;
 }
 
-nt_bank_value nt_yield_relief_at(const nt_plan *plan, const nt_place *place, int attached, double gap)
+nt_bank_value nt_deform_relief_at(const nt_plan *plan, const nt_place *place, int attached, double gap)
 {
-    const nt_yield_relief *relief = &plan->relief;
+    const nt_deform_relief *relief = &plan->relief;
     const double R = nt_plan_radius_at(plan, place);
     const mix m = mix_of(relief, R);
     const mark which = mark_for(relief->table[0], attached);
@@ -102,8 +102,8 @@ nt_bank_value nt_yield_relief_at(const nt_plan *plan, const nt_place *place, int
     for (int i = 0; i < POINTS; ++i) {
         if (m.weight[i] == 0.0 && m.slope[i] == 0.0)
             continue;
-        const nt_yield_table *table = relief->table[m.first + i];
-        const nt_law_value value = nt_yield_around(plan, table, attached, gap - at + mark_of(table, which));
+        const nt_deform_table *table = relief->table[m.first + i];
+        const nt_law_value value = nt_deform_around(plan, table, attached, gap - at + mark_of(table, which));
         const double share = 1.0 / (plan->contact.radius * table->ratio);
         sum.U += m.weight[i] * share * value.U;
         sum.F += m.weight[i] * share * value.F;
@@ -114,7 +114,7 @@ nt_bank_value nt_yield_relief_at(const nt_plan *plan, const nt_place *place, int
     return (nt_bank_value){{R * sum.U, R * sum.F, R * sum.k, sqrt(R) * sum.a}, sum.U + rises};
 }
 
-double nt_yield_relief_fold(const nt_plan *plan, double radius, int attached)
+double nt_deform_relief_fold(const nt_plan *plan, double radius, int attached)
 {
     const mix m = mix_of(&plan->relief, radius);
     return mixed(&plan->relief, &m, mark_for(plan->relief.table[0], attached), NULL);
@@ -122,15 +122,15 @@ double nt_yield_relief_fold(const nt_plan *plan, double radius, int attached)
 
 double nt_plan_capture_gap(const nt_plan *plan, const nt_place *place)
 {
-    if (!place || plan->relief.count == 0 || !plan->yield.jumps)
+    if (!place || plan->relief.count == 0 || !plan->deformation.jumps)
         return plan->capture_gap;
-    return nt_yield_relief_fold(plan, place->radius.radius, 0);
+    return nt_deform_relief_fold(plan, place->radius.radius, 0);
 }
 
-double nt_yield_relief_share(const nt_plan *plan, double radius, double *slope)
+double nt_deform_relief_share(const nt_plan *plan, double radius, double *slope)
 {
     *slope = 0.0;
-    if (plan->yield.jumps)
+    if (plan->deformation.jumps)
         return 0.0;
     const mix m = mix_of(&plan->relief, radius);
     const double share = mixed(&plan->relief, &m, SHARE, slope);

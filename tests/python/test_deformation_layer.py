@@ -48,7 +48,7 @@ def contact(a: float, thickness: float, nu: float) -> Contact:
 
 
 def layered(thickness: float, nu: float) -> Scene:
-    """Touched through a double layer that is hardly felt, but which makes the sample yield."""
+    """Touched through a double layer that is hardly felt, but which makes the sample deform."""
     return Scene(
         tip={"radius": RADIUS, "youngs_modulus": 1e13, "surface_potential": -3e-3},
         sample={"youngs_modulus": MODULUS, "poisson_ratio": nu, "thickness": thickness, "surface_potential": -3e-3},
@@ -78,7 +78,7 @@ def test_contact_is_that_of_the_layer(nu: float, ratio: float) -> None:
     plan, truth = scene.plan(1e-3), contact(a, a / ratio, nu)
     scene.sample.thickness = 0.0
     half = scene.plan(1e-3)
-    assert plan.explain()["yields"]
+    assert plan.explain()["deforms"]
     assert truth.force < 80e-9
     assert not any("half-space" in warning.text for warning in plan.warnings)
     assert plan.force(-truth.indentation) == pytest.approx(truth.force, rel=5e-3)

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/yielding/yield.h"
+#include "scene/deformation/deform.h"
 
-enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, TWICE = 2, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
+enum { N = NT_DEFORM_ORDER, STEPS = 40, MESHES = 24, TWICE = 2, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
 enum { MOST_MESHES = 3000 };  /* of one table, which takes 50 to 800: what comes to no end is told in seconds */
 enum { FULL = HALVINGS / 4 }; /* what a step counts that no mesh resolves, which a shorter one may not cure */
 
@@ -15,7 +15,7 @@ enum { FULL = HALVINGS / 4 }; /* what a step counts that no mesh resolves, which
 #define AHEAD 0.7       /* of the way to where a law diverges */
 #define TOLERABLE 10.0  /* times what a panel must resolve */
 
-double nt_yield_rim(const nt_yield_solver *s, double h, double x, double *slope)
+double nt_deform_rim(const nt_deform_solver *s, double h, double x, double *slope)
 {
     const double a = s->mesh.a, R = s->sample->radius, r2 = a * a + x, arc = asin(fmin(a / sqrt(r2), 1.0));
     *slope = -2.0 / NT_PI * arc;
@@ -23,18 +23,18 @@ double nt_yield_rim(const nt_yield_solver *s, double h, double x, double *slope)
 }
 
 /* The same at a node, with what a layer adds. */
-static double rim_at(const nt_yield_solver *s, int node, double *slope)
+static double rim_at(const nt_deform_solver *s, int node, double *slope)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     *slope = 0.0;
     if (!(m->a > 0.0))
         return 0.0;
-    const double u = nt_yield_rim(s, s->h, m->x[node], slope);
+    const double u = nt_deform_rim(s, s->h, m->x[node], slope);
     *slope += m->bend[1][node];
     return u + m->bend[0][node] + m->bend[1][node] * s->h;
 }
 
-int nt_yield_eliminate(nt_yield_solver *s, double *b, int n)
+int nt_deform_eliminate(nt_deform_solver *s, double *b, int n)
 {
     for (int c = 0; c < n; ++c) {
         int best = c;
@@ -67,33 +67,33 @@ int nt_yield_eliminate(nt_yield_solver *s, double *b, int n)
 }
 
 /* The row of what is held, and its residual. */
-static double held(nt_yield_solver *s, nt_yield_hold hold, double value, const nt_pressure *p)
+static double held(nt_deform_solver *s, nt_deform_hold hold, double value, const nt_pressure *p)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
-    const double sign = hold == NT_YIELD_CENTRE ? 1.0 : -1.0;
+    const double sign = hold == NT_DEFORM_CENTRE ? 1.0 : -1.0;
     double u0 = 0.0;
     for (int j = 0; j < n; ++j) {
         u0 += m->K0[j] * p[j].pressure;
-        s->A[n][j] = hold == NT_YIELD_GAP ? 0.0 : sign * m->K0[j] * p[j].slope;
+        s->A[n][j] = hold == NT_DEFORM_GAP ? 0.0 : sign * m->K0[j] * p[j].slope;
     }
-    s->A[n][n] = hold == NT_YIELD_CONTACT ? -1.0 - m->edge[1] : 1.0;
-    if (hold == NT_YIELD_GAP)
+    s->A[n][n] = hold == NT_DEFORM_CONTACT ? -1.0 - m->edge[1] : 1.0;
+    if (hold == NT_DEFORM_GAP)
         return value - s->h;
-    if (hold == NT_YIELD_CENTRE)
+    if (hold == NT_DEFORM_CENTRE)
         return value - s->h - u0;
     return s->h + m->a * m->a / s->sample->radius + u0 + m->edge[0] + m->edge[1] * s->h;
 }
 
 /* One step of Newton; how far it went over the largest gap, NaN where it cannot. */
-static double newton_step(nt_yield_solver *s, nt_yield_hold hold, double value)
+static double newton_step(nt_deform_solver *s, nt_deform_hold hold, double value)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
-    nt_pressure p[NT_YIELD_NODES];
-    double b[NT_YIELD_NODES + 1], ahead = 1.0, far = 0.0, moved = 0.0;
+    nt_pressure p[NT_DEFORM_NODES];
+    double b[NT_DEFORM_NODES + 1], ahead = 1.0, far = 0.0, moved = 0.0;
     for (int j = 0; j < n; ++j)
-        p[j] = nt_yield_law(s, s->gap[j]);
+        p[j] = nt_deform_law(s, s->gap[j]);
     for (int i = 0; i < n; ++i) {
         double slope, u = rim_at(s, i, &slope);
         for (int j = 0; j < n; ++j) {
@@ -105,7 +105,7 @@ static double newton_step(nt_yield_solver *s, nt_yield_hold hold, double value)
         b[i] = s->h + 0.5 * (m->a * m->a + m->x[i]) / s->sample->radius + u - s->gap[i];
     }
     b[n] = held(s, hold, value, p);
-    if (!nt_yield_eliminate(s, b, n + 1))
+    if (!nt_deform_eliminate(s, b, n + 1))
         return NAN;
     for (int i = 0; i < n; ++i)
         if (-b[i] > AHEAD * (s->gap[i] - s->sample->pole))
@@ -121,7 +121,7 @@ static double newton_step(nt_yield_solver *s, nt_yield_hold hold, double value)
     return moved / (far + fabs(s->h));
 }
 
-static nt_status newton(nt_yield_solver *s, nt_yield_hold hold, double value)
+static nt_status newton(nt_deform_solver *s, nt_deform_hold hold, double value)
 {
     for (int i = 0; i < STEPS; ++i) {
         const double moved = newton_step(s, hold, value);
@@ -134,27 +134,27 @@ static nt_status newton(nt_yield_solver *s, nt_yield_hold hold, double value)
 }
 
 /* Newton, a better mesh, Newton, ...; what a full mesh does not resolve has to be within the tolerance of others. */
-static nt_status settle(nt_yield_solver *s, nt_yield_hold hold, double value)
+static nt_status settle(nt_deform_solver *s, nt_deform_hold hold, double value)
 {
-    nt_yield_edges list;
+    nt_deform_edges list;
     for (int i = 0; i < MESHES && --s->left > 0; ++i) {
         s->graded = i >= TWICE;
         const nt_status status = newton(s, hold, value);
         if (status != NT_OK)
             return status;
-        if (!nt_yield_refine(s, &list))
+        if (!nt_deform_refine(s, &list))
             return NT_OK;
-        if (list.count <= NT_YIELD_PANELS + 1) {
-            nt_yield_move(s, list.at, list.count - 1, s->mesh.a);
+        if (list.count <= NT_DEFORM_PANELS + 1) {
+            nt_deform_move(s, list.at, list.count - 1, s->mesh.a);
             continue;
         }
-        if (!nt_yield_coarsen(s))
+        if (!nt_deform_coarsen(s))
             return s->rough < TOLERABLE ? NT_OK : NT_E_CAPACITY;
     }
     return NT_E_NO_CONVERGENCE;
 }
 
-nt_status nt_yield_begin(nt_yield_solver *s, const nt_yield_sample *sample, double gap)
+nt_status nt_deform_begin(nt_deform_solver *s, const nt_deform_sample *sample, double gap)
 {
     s->sample = sample;
     s->left = MOST_MESHES;
@@ -163,24 +163,24 @@ nt_status nt_yield_begin(nt_yield_solver *s, const nt_yield_sample *sample, doub
     s->mesh.panels = 4;
     for (int i = 0; i <= 4; ++i)
         s->mesh.edges[i] = i == 0 ? 0.0 : 2.0 * sample->radius * sample->length * pow(2.0, i - 1);
-    nt_yield_mesh_make(&s->mesh, sample, s->A[0]);
+    nt_deform_mesh_make(&s->mesh, sample, s->A[0]);
     for (int i = 0; i < s->mesh.count; ++i)
         s->gap[i] = gap + 0.5 * s->mesh.x[i] / sample->radius;
-    return settle(s, NT_YIELD_GAP, gap);
+    return settle(s, NT_DEFORM_GAP, gap);
 }
 
 /* --- One point --- */
 
 /* Of the whole: F, k, the gap under the apex and its slope in h, by the tangent at fixed a. */
-static int report(nt_yield_solver *s, nt_yield_point *point)
+static int report(nt_deform_solver *s, nt_deform_point *point)
 {
-    const nt_yield_mesh *m = &s->mesh;
+    const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
     const double R = s->sample->radius, E = s->sample->modulus, a = m->a;
-    nt_pressure p[NT_YIELD_NODES];
-    double y[NT_YIELD_NODES];
+    nt_pressure p[NT_DEFORM_NODES];
+    double y[NT_DEFORM_NODES];
     for (int j = 0; j < n; ++j)
-        p[j] = nt_yield_law(s, s->gap[j]);
+        p[j] = nt_deform_law(s, s->gap[j]);
     for (int i = 0; i < n; ++i) {
         double slope;
         (void)rim_at(s, i, &slope);
@@ -188,9 +188,9 @@ static int report(nt_yield_solver *s, nt_yield_point *point)
         for (int j = 0; j < n; ++j)
             s->A[i][j] = (i == j) - m->K[i][j] * p[j].slope;
     }
-    if (!nt_yield_eliminate(s, y, n))
+    if (!nt_deform_eliminate(s, y, n))
         return 0;
-    const nt_pressure outer = nt_yield_law(s, nt_yield_outer_gap(s));
+    const nt_pressure outer = nt_deform_law(s, nt_deform_outer_gap(s));
     double F = 2.0 * NT_PI * R * outer.energy, k = 2.0 * NT_PI * R * outer.pressure, u0 = 0.0, u0_slope = 0.0;
     for (int j = 0; j < n; ++j) {
         const double weight = a > 0.0 ? m->load[j] : m->area[j];
@@ -199,71 +199,71 @@ static int report(nt_yield_solver *s, nt_yield_point *point)
         u0 += m->K0[j] * p[j].pressure;
         u0_slope += m->K0[j] * p[j].slope * y[j];
     }
-    *point = (nt_yield_point){s->h, F, k, s->h + u0, 1.0 + u0_slope, a, 0.0};
+    *point = (nt_deform_point){s->h, F, k, s->h + u0, 1.0 + u0_slope, a, 0.0};
     if (a > 0.0) {
         F += 2.0 * E * a * (-s->h - a * a / (3.0 * R)) + m->push[0] + m->push[1] * s->h;
-        *point = (nt_yield_point){s->h, F, k + 2.0 * E * a - m->push[1], 0.0, 0.0, a, 0.0};
+        *point = (nt_deform_point){s->h, F, k + 2.0 * E * a - m->push[1], 0.0, 0.0, a, 0.0};
     }
-    point->peak = nt_yield_peak_of(s, point->centre);
+    point->peak = nt_deform_peak_of(s, point->centre);
     return isfinite(point->F) && isfinite(point->k);
 }
 
-static double value_of(const nt_yield_solver *s, nt_yield_hold hold)
+static double value_of(const nt_deform_solver *s, nt_deform_hold hold)
 {
     double u0 = 0.0;
-    if (hold == NT_YIELD_GAP)
+    if (hold == NT_DEFORM_GAP)
         return s->h;
-    if (hold == NT_YIELD_CONTACT)
+    if (hold == NT_DEFORM_CONTACT)
         return s->mesh.a;
     for (int j = 0; j < s->mesh.count; ++j)
-        u0 += s->mesh.K0[j] * nt_yield_law(s, s->gap[j]).pressure;
+        u0 += s->mesh.K0[j] * nt_deform_law(s, s->gap[j]).pressure;
     return s->h + u0;
 }
 
-nt_yield_state nt_yield_keep(const nt_yield_solver *s)
+nt_deform_state nt_deform_keep(const nt_deform_solver *s)
 {
-    nt_yield_state state = {.h = s->h, .a = s->mesh.a, .end = s->end, .panels = s->mesh.panels};
+    nt_deform_state state = {.h = s->h, .a = s->mesh.a, .end = s->end, .panels = s->mesh.panels};
     memcpy(state.gap, s->gap, sizeof state.gap);
     memcpy(state.edges, s->mesh.edges, sizeof state.edges);
     return state;
 }
 
-void nt_yield_restore(nt_yield_solver *s, const nt_yield_state *state)
+void nt_deform_restore(nt_deform_solver *s, const nt_deform_state *state)
 {
-    nt_yield_move(s, state->edges, state->panels, state->a);
+    nt_deform_move(s, state->edges, state->panels, state->a);
     memcpy(s->gap, state->gap, sizeof s->gap);
     s->h = state->h;
     s->end = state->end;
 }
 
-static int sticks(const nt_yield_solver *s)
+static int sticks(const nt_deform_solver *s)
 {
     return s->sample->stress > 0.0;
 }
 
 /* One step, from and back to what was found last. */
-static nt_status step_to(nt_yield_solver *s, nt_yield_hold hold, double value)
+static nt_status step_to(nt_deform_solver *s, nt_deform_hold hold, double value)
 {
-    const nt_yield_state before = nt_yield_keep(s);
-    if (hold == NT_YIELD_CONTACT && !sticks(s))
-        nt_yield_move(s, before.edges, before.panels, value);
+    const nt_deform_state before = nt_deform_keep(s);
+    if (hold == NT_DEFORM_CONTACT && !sticks(s))
+        nt_deform_move(s, before.edges, before.panels, value);
     const nt_status status =
-        sticks(s) ? nt_yield_settle_contact(s, value, s->end * value / before.a) : settle(s, hold, value);
+        sticks(s) ? nt_deform_settle_contact(s, value, s->end * value / before.a) : settle(s, hold, value);
     if (status != NT_OK)
-        nt_yield_restore(s, &before);
+        nt_deform_restore(s, &before);
     return status;
 }
 
-static int report_of(nt_yield_solver *s, nt_yield_point *point)
+static int report_of(nt_deform_solver *s, nt_deform_point *point)
 {
-    return sticks(s) ? nt_yield_report_contact(s, point) : report(s, point);
+    return sticks(s) ? nt_deform_report_contact(s, point) : report(s, point);
 }
 
-nt_status nt_yield_go(nt_yield_solver *s, nt_yield_hold hold, double value, nt_yield_point *point)
+nt_status nt_deform_go(nt_deform_solver *s, nt_deform_hold hold, double value, nt_deform_point *point)
 {
     double here = value_of(s, hold), target = value;
     if (!sticks(s))
-        (void)nt_yield_coarsen(s);
+        (void)nt_deform_coarsen(s);
     for (int halvings = 0; halvings < (sticks(s) ? HALVINGS_IN_CONTACT : HALVINGS);) {
         const nt_status status = step_to(s, hold, target);
         if (status != NT_OK) {

@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/yielding/yield.h"
+#include "scene/deformation/deform.h"
 
-enum { WAVES = NT_YIELD_WAVES, NODES = NT_YIELD_NODES };
+enum { WAVES = NT_DEFORM_WAVES, NODES = NT_DEFORM_NODES };
 
 #define FAR 16.0   /* series of the sine integral */
 #define SHORT 0.05 /* k a, below which a series is nearer than the closed form */
@@ -100,7 +100,7 @@ static void solve(double S[WAVES][WAVES], columns *c, int count)
 }
 
 /* C by nodes, h and R; then W C. */
-static void answer(const nt_yield_mesh *mesh, const nt_yield_sample *sample, const nt_yield_spectrum *s, columns *c)
+static void answer(const nt_deform_mesh *mesh, const nt_deform_sample *sample, const nt_deform_spectrum *s, columns *c)
 {
     const double a = mesh->a, half = 0.5 * sample->modulus;
     double S[WAVES][WAVES];
@@ -120,7 +120,8 @@ static void answer(const nt_yield_mesh *mesh, const nt_yield_sample *sample, con
     }
 }
 
-void nt_yield_layer_add(nt_yield_mesh *mesh, const nt_yield_sample *sample, const nt_yield_spectrum *s, double *waves)
+void nt_deform_layer_add(nt_deform_mesh *mesh, const nt_deform_sample *sample, const nt_deform_spectrum *s,
+                         double *waves)
 {
     columns c = {.node = waves + WAVES * NODES};
     memcpy(c.node, waves, WAVES * NODES * sizeof *waves);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The pressures of all terms of a plan, summed, and what yields to them; the terms themselves on undeformed bodies. */
+ * The pressures of all terms of a plan, summed, and what deforms under them; the terms themselves on undeformed bodies.
+ */
 #include <math.h>
 
+#include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
-#include "scene/yielding/yield.h"
 
 #define STEP 1e-4  /* of a gap: differences */
 #define FADED 1e-6 /* of what a law is at half the gap: it ends without a kink */
@@ -98,7 +99,7 @@ static nt_pressure pressure_of_tip(const nt_plan *plan, int term, double gap)
     return (nt_pressure){here.F / per_area, here.k / per_area, (far - near) / (2.0 * step * per_area)};
 }
 
-static int acts(const nt_yield_terms *in, int term)
+static int acts(const nt_deform_terms *in, int term)
 {
     const nt_term_row *row = nt_term_rows[term];
     return row->pressure && nt_plan_full_form(in->plan, term) != NT_FORM_OFF && !(in->around && row->words.tail);
@@ -106,7 +107,7 @@ static int acts(const nt_yield_terms *in, int term)
 
 static nt_pressure terms_at(const void *context, double gap)
 {
-    const nt_yield_terms *in = context;
+    const nt_deform_terms *in = context;
     nt_pressure all = {0.0, 0.0, 0.0};
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (acts(in, term)) {
@@ -123,7 +124,7 @@ static nt_pressure terms_at(const void *context, double gap)
 /* The gap under the apex that a step from a gap may reach: as far inwards as it passes few pieces of a law. */
 static double reach(const void *context, double gap)
 {
-    const nt_yield_terms *in = context;
+    const nt_deform_terms *in = context;
     double nearest = -INFINITY;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         const double *gaps = NULL;
@@ -138,7 +139,7 @@ static double reach(const void *context, double gap)
 }
 
 /* Where a term ends, as a brush does, and does not only fade, from where the bodies touch [m]; 0 if it goes on. */
-static double end_of(const nt_yield_terms *in, int term)
+static double end_of(const nt_deform_terms *in, int term)
 {
     const nt_term_row *row = nt_term_rows[term];
     double low = fmax(in->hold, 1e-11), high = 1e-5;
@@ -153,25 +154,25 @@ static double end_of(const nt_yield_terms *in, int term)
     return fabs(inside) > FADED * fabs(deeper) ? high - in->hold : 0.0;
 }
 
-nt_yield_sample nt_yield_sample_of(const nt_yield_terms *in, const nt_scene *scene, double farthest)
+nt_deform_sample nt_deform_sample_of(const nt_deform_terms *in, const nt_scene *scene, double farthest)
 {
     const nt_plan *plan = in->plan;
     const nt_specimen *s = &scene->sample;
     const double compliance = (1.0 - s->poisson_ratio * s->poisson_ratio) / s->youngs_modulus;
-    nt_yield_sample sample = {.radius = plan->contact.radius,
-                              .modulus = plan->contact.effective_modulus,
-                              .thickness = s->thickness,
-                              .poisson_ratio = s->poisson_ratio,
-                              .share = compliance * plan->contact.effective_modulus,
-                              .law = terms_at,
-                              .reach = reach,
-                              .context = in,
-                              .pole = -in->hold};
+    nt_deform_sample sample = {.radius = plan->contact.radius,
+                               .modulus = plan->contact.effective_modulus,
+                               .thickness = s->thickness,
+                               .poisson_ratio = s->poisson_ratio,
+                               .share = compliance * plan->contact.effective_modulus,
+                               .law = terms_at,
+                               .reach = reach,
+                               .context = in,
+                               .pole = -in->hold};
     const nt_elastic_sum far = nt_elastic_sum_at(plan, farthest);
     sample.length = far.here_F / far.here_k;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         const double end = end_of(in, term);
-        if (end > 0.0 && sample.end_count < NT_YIELD_ENDS)
+        if (end > 0.0 && sample.end_count < NT_DEFORM_ENDS)
             sample.ends[sample.end_count++] = end;
     }
     return sample;
