@@ -8,6 +8,8 @@
 #include "core/clamp.h"
 #include "core/same_bits.h"
 
+#define ROUNDING (1.0 + 1e-9) /* of a way at the limit */
+
 void nt_sideways_follow_hand(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
     for (int i = NT_X; i < NT_Z; ++i) {
@@ -94,9 +96,14 @@ void nt_sideways_move(const nt_touch *touch, nt_touch_state *state)
         return;
     }
     const nt_sum left = state->target_time;
-    const double share = left > touch->period ? touch->period / left : 1.0;
-    state->command.stage_position[NT_X] += share * (state->target_x - state->command.stage_position[NT_X]);
-    state->command.stage_position[NT_Y] += share * (state->target_y - state->command.stage_position[NT_Y]);
+    const double *stage = state->command.stage_position, most = touch->settings.limits.lateral_speed * touch->period;
+    const double way[2] = {state->target_x - stage[NT_X], state->target_y - stage[NT_Y]};
+    const double length = hypotenuse(way[NT_X], way[NT_Y]);
+    double share = left > touch->period ? touch->period / left : 1.0;
+    if (share * length > most * ROUNDING) /* the limit has been lowered on the way */
+        share = most / length;
+    state->command.stage_position[NT_X] += share * way[NT_X];
+    state->command.stage_position[NT_Y] += share * way[NT_Y];
     state->target_time = greater(0.0, left - touch->period);
 }
 

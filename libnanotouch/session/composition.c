@@ -3,8 +3,10 @@
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/problem.h"
+#include "session/grip.h"
 #include "session/state.h"
 
 /* A law of one's own is not tried where the margin is overridden: it may have a memory. */
@@ -58,6 +60,7 @@ static nt_status promise(nt_composition *made, nt_problem *problem)
         made->guarantee.lateral_force = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard).lateral_force +
                                         nt_composition_resistance(made, made->guarantee.force);
     }
+    made->guarantee.lateral_force += 2.0 * nt_grip_uneven(plan, made->guarantee.force); /* it may turn after the limit */
     return NT_OK;
 }
 
@@ -83,42 +86,69 @@ static nt_status make_terrain(nt_composition *made, const nt_composition *before
     return nt_terrain_make(&made->terrain, &wanted, problem);
 }
 
-/* A stage of one axis reaches the place where it starts, and no other. */
-static nt_status find_reach_at_start(nt_composition *made, nt_problem *problem)
+/* A path of a stage of one axis is the place where it starts. */
+static nt_status check_standing(const nt_session_setup *setup, nt_problem *problem)
 {
     static const char *const names[] = {"path.x of a stage of one axis", "path.y of a stage of one axis"};
-    const nt_session_setup *setup = &made->setup;
     const double start[] = {setup->x, setup->y};
-    for (long i = 0; setup->path && i < 2 * setup->path_count; ++i)
+    for (long i = 0; i < 2 * setup->path_count; ++i)
         if (setup->path[i] != start[i % 2])
             return nt_problem_set(problem, names[i % 2], "m", setup->path[i], start[i % 2], start[i % 2]);
-    return nt_terrain_reach_path(made->terrain, start, 1, &made->reach, problem);
+    return NT_OK;
 }
 
-static nt_status find_reach(nt_composition *made, nt_problem *problem)
+/* A declared path holds only where no master can leave it. */
+static int keeps_to_path(const nt_session_setup *setup)
+{
+    return setup->path && setup->rig.master.axes == 1.0;
+}
+
+/* All places that the tip can be led to: by the stage's axes, the master's, inputs and requests (check_place). */
+static nt_area led_over(const nt_composition *made)
 {
     const nt_session_setup *setup = &made->setup;
+    nt_area area = {setup->x, setup->y, setup->x, setup->x, setup->y, setup->y};
     if (setup->rig.stage.axes == 1.0)
-        return find_reach_at_start(made, problem);
-    if (setup->path)
-        return nt_terrain_reach_path(made->terrain, setup->path, setup->path_count, &made->reach, problem);
-    const nt_area area = nt_terrain_whole(made->terrain, setup->x, setup->y);
-    return nt_terrain_reach_area(made->terrain, &area, &made->reach, problem);
+        return area;
+    if (!keeps_to_path(setup))
+        return nt_terrain_whole(made->terrain, setup->x, setup->y);
+    for (long i = 0; i < setup->path_count; ++i) {
+        const double x = setup->path[2 * i], y = setup->path[2 * i + 1];
+        area.x_min = fmin(area.x_min, x);
+        area.x_max = fmax(area.x_max, x);
+        area.y_min = fmin(area.y_min, y);
+        area.y_max = fmax(area.y_max, y);
+    }
+    return area;
 }
 
-static void set_borders(nt_composition *made)
+/* On a flat each place is as the start. */
+static void set_borders(nt_composition *made, const nt_area *led)
 {
     const nt_surface *surface = nt_terrain_surface(made->terrain);
-    const double start[] = {made->setup.x, made->setup.y};
-    for (int i = NT_X; i < NT_Z && made->setup.rig.stage.axes == 1.0; ++i)
-        made->touch.borders[i][0] = made->touch.borders[i][1] = start[i];
-    if (!surface || made->setup.rig.stage.axes == 1.0)
-        return;
-    const double ends[] = {(double)(surface->nx - 1) * surface->dx, (double)(surface->ny - 1) * surface->dy};
-    for (int i = NT_X; i < NT_Z; ++i) {
-        made->touch.borders[i][0] = 0.0;
-        made->touch.borders[i][1] = ends[i];
+    const double borders[2][2] = {{led->x_min, led->x_max}, {led->y_min, led->y_max}};
+    if ((surface && surface->coefficients) || made->setup.rig.stage.axes == 1.0)
+        memcpy(made->touch.borders, borders, sizeof borders);
+}
+
+static nt_status find_reach(nt_composition *made, const nt_composition *before, nt_problem *problem)
+{
+    const nt_session_setup *setup = &made->setup;
+    if (before) {
+        made->reach = before->reach;
+        memcpy(made->touch.borders, before->touch.borders, sizeof made->touch.borders);
+        return NT_OK;
     }
+    nt_status status = NT_OK;
+    if (keeps_to_path(setup) && setup->rig.stage.axes == 1.0)
+        status = check_standing(setup, problem);
+    if (status == NT_OK && keeps_to_path(setup))
+        status = nt_terrain_check_path(made->terrain, setup->path, setup->path_count, problem);
+    const nt_area led = led_over(made);
+    if (status == NT_OK)
+        status = nt_terrain_reach_area(made->terrain, &led, &made->reach, problem);
+    set_borders(made, &led);
+    return status;
 }
 
 static int has_same_scene(const nt_session_setup *a, const nt_session_setup *b)
@@ -153,11 +183,7 @@ nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const
     if (status == NT_OK)
         status = nt_composition_take_pushed(next, before, problem);
     if (status == NT_OK)
-        set_borders(next);
-    if (before)
-        next->reach = before->reach;
-    else if (status == NT_OK)
-        status = find_reach(next, problem);
+        status = find_reach(next, before, problem);
     if (status == NT_OK)
         status = promise(next, problem);
     if (status == NT_OK)

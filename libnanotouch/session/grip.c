@@ -4,6 +4,7 @@
 
 #include "core/same_bits.h"
 #include "nanotouch/hazard.h"
+#include "scene/parts.h"
 #include "session/grip.h"
 #include "session/well.h"
 
@@ -64,6 +65,54 @@ static void add_friction(nt_sideways_contact *found, const nt_plan *plan, double
         const double radius = nt_interaction_eval_gap(plan, &attached, &well.place, deep).a;
         found->stick = fmax(found->stick, nt_friction_stiffness(&law, radius));
     }
+}
+
+/* First derivatives of a cubic spline are means of first differences of its coefficients: their largest sizes. */
+static double gradient_of(const nt_surface *surface)
+{
+    const long nx = surface->nx, ny = surface->ny;
+    double x = 0.0, y = 0.0;
+    for (long j = 0; surface->coefficients && j < ny; ++j)
+        for (long i = 0; i < nx; ++i) {
+            const double *c = surface->coefficients + j * nx + i;
+            x = i + 1 < nx ? fmax(x, fabs(c[1] - c[0])) : x;
+            y = j + 1 < ny ? fmax(y, fabs(c[nx] - c[0])) : y;
+        }
+    return x > 0.0 || y > 0.0 ? hypotenuse(x / surface->dx, y / surface->dy) : 0.0;
+}
+
+/* |dU/dp| of a corner at a gap, times the steepest change of p: of radius, modulus and work of adhesion. */
+static double uneven_at(const nt_plan *plan, const nt_place *place, const double steepest[3], double gap)
+{
+    const nt_interaction_state attached = {.attached = 1};
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        nt_place changes = *place;
+        *(i == 0   ? &changes.radius.dx
+          : i == 1 ? &changes.youngs_modulus.dx
+                   : &changes.work_of_adhesion.dx) = steepest[i];
+        double sides[2];
+        nt_plan_sides(plan, &attached, &changes, gap, 0.0, sides);
+        sum += fabs(sides[0]);
+    }
+    return sum;
+}
+
+double nt_grip_uneven(const nt_plan *plan, double load)
+{
+    const nt_properties *properties = plan->properties;
+    const double steepest[] = {plan->followed ? plan->contact.radius * gradient_of(&plan->followed->ratio) : 0.0,
+                               properties ? gradient_of(&properties->youngs_modulus) : 0.0,
+                               properties ? gradient_of(&properties->work_of_adhesion) : 0.0};
+    double most = 0.0;
+    for (int i = 0; i < 4 && nt_plan_follows(plan); ++i) {
+        const nt_well well = {.plan = plan, .place = corner(plan, i & 1, i >> 1)};
+        const double deep = nt_well_gap_of_force(&well, load, 0.0), release = nt_plan_release_gap(plan, &well.place);
+        const double last = isfinite(release) ? fmax(release, 0.0) : 0.0;
+        for (int k = 0; k <= STEPS; ++k)
+            most = fmax(most, uneven_at(plan, &well.place, steepest, deep + k * (last - deep) / STEPS));
+    }
+    return most;
 }
 
 /* Second derivatives of a cubic spline are means of second differences of its coefficients: their largest sizes. */

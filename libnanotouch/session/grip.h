@@ -7,5 +7,7 @@
 
 /* The largest friction of any place of a plan under a load [N], whether the plan computes friction or not. */
 double nt_grip_friction(const nt_plan *plan, double load);
+/* What radius and material that change from place to place push sideways at most, under loads up to one [N]. */
+double nt_grip_uneven(const nt_plan *plan, double load);
 
 #endif

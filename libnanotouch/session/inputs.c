@@ -7,13 +7,14 @@
 
 nt_status nt_session_check_place(const nt_session *session, double x, double y, double duration, nt_problem *problem)
 {
-    const double (*borders)[2] = session->borders;
+    static const char *const names[2][2] = {{"input.x", "input.y"},
+                                            {"input.x beside the declared path", "input.y beside the declared path"}};
+    const double (*borders)[2] = session->borders, to[] = {x, y};
     if (!(duration >= 0.0 && isfinite(duration)))
         return nt_problem_set(problem, "input.duration", "s", duration, 0.0, INFINITY);
-    if (!isfinite(x) || x < borders[NT_X][0] || x > borders[NT_X][1])
-        return nt_problem_set(problem, "input.x", "m", x, borders[NT_X][0], borders[NT_X][1]);
-    if (!isfinite(y) || y < borders[NT_Y][0] || y > borders[NT_Y][1])
-        return nt_problem_set(problem, "input.y", "m", y, borders[NT_Y][0], borders[NT_Y][1]);
+    for (int i = NT_X; i < NT_Z; ++i)
+        if (!isfinite(to[i]) || to[i] < borders[i][0] || to[i] > borders[i][1])
+            return nt_problem_set(problem, names[session->keeps_to_path][i], "m", to[i], borders[i][0], borders[i][1]);
     return NT_OK;
 }
 

@@ -64,6 +64,7 @@ static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_pr
     session->master_travel = setup->rig.master.travel;
     session->master_axes = setup->rig.master.axes;
     memcpy(session->borders, session->now->touch.borders, sizeof session->borders);
+    session->keeps_to_path = setup->path && setup->rig.master.axes == 1.0 && setup->rig.stage.axes > 1.0;
     return NT_OK;
 }
 

@@ -58,7 +58,8 @@ struct nt_session {
     nt_host host;
     double master_start, master_travel; /* [m] */
     double master_axes;                 /* these three: for inputs of any thread */
-    double borders[2][2];               /* of the surface, x and y [m] */
+    double borders[2][2];               /* of where the tip can be led, x and y [m] */
+    int keeps_to_path;                  /* 1: they lie around a declared path */
     int64_t deadline;                   /* of this tick, where a half has a clock of its own [ns] */
     nt_frames *frames;
     nt_frame *stepped; /* nt_session_step wants this tick's; else NULL */
@@ -117,6 +118,11 @@ void nt_composition_close(nt_composition *composition, const nt_composition *oth
 int nt_composition_allows(const nt_composition *composition, double margin);
 /* Of these settings in a mode at the stiffest contact of the plan: margins, sideways and tap. */
 nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *settings, nt_mode mode);
+
+/* --- terrain_reach.c --- */
+
+/* Do all points (x, y) lie on the surface? */
+nt_status nt_terrain_check_path(const nt_terrain *terrain, const double *xy, long count, nt_problem *problem);
 
 /* --- tap_loop.c --- */
 

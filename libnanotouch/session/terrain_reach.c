@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "nanotouch/terrain.h"
+#include "session/state.h"
 #include "surface/extremes.h"
 
 static nt_status check_within(double value, const nt_problem *valid, nt_problem *problem)
@@ -38,7 +39,7 @@ static borders borders_of(const nt_terrain *terrain)
     return (borders){0.0, {(double)(surface->nx - 1) * surface->dx, (double)(surface->ny - 1) * surface->dy}};
 }
 
-static nt_status check_path(const nt_terrain *terrain, const double *xy, long count, nt_problem *problem)
+nt_status nt_terrain_check_path(const nt_terrain *terrain, const double *xy, long count, nt_problem *problem)
 {
     const borders on = borders_of(terrain);
     const nt_problem counts = {"path.count", "", 0.0, 1.0, (double)LONG_MAX};
@@ -97,7 +98,7 @@ nt_status nt_terrain_reach_path(const nt_terrain *terrain, const double *xy, lon
 {
     if (!terrain || !xy || !reach)
         return NT_E_ARGUMENT;
-    const nt_status status = check_path(terrain, xy, count, problem);
+    const nt_status status = nt_terrain_check_path(terrain, xy, count, problem);
     if (status != NT_OK)
         return status;
     *reach = level(terrain);

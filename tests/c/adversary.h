@@ -314,14 +314,30 @@ static inline int strike(nt_session *session, const plot *p, dice *d, long end, 
     return 1;
 }
 
+/* What the operator reads before arming: promised of the same setup with the rig as it is believed to be, and of nothing
+ * else. */
+static inline nt_status take_promise(plot *p)
+{
+    nt_session_setup believed = p->setup;
+    nt_session *session = NULL;
+    believed.rig = p->believed;
+    believed.settings = p->settings;
+    believed.faults = NULL;
+    believed.minimum_margin = 0.0; /* that was judged of the rig as it is */
+    const nt_status status = nt_session_open(&session, &believed, NULL);
+    if (status != NT_OK)
+        return status;
+    p->promised = nt_session_guarantee(session);
+    p->reach = nt_session_reach(session);
+    nt_session_close(session);
+    return NT_OK;
+}
+
 /* One operator after the other. */
 static inline void fight(nt_session *session, plot *p, dice *d, closeness *found)
 {
     static const double lasts[ATTACKS] = {1.0, 0.06, 2.0}; /* of each [s] */
     const double period = nt_session_touch(session)->period;
-    p->hazard = nt_hazard_of(nt_session_plan(session), &p->believed, &p->settings, nt_session_reach(session).slope,
-                             p->setup.clearance);
-    p->promised = nt_guarantee_compute(&p->believed, &p->settings, &p->hazard);
     const int operators = p->known ? 1 : operators_of(p->kind);
     for (int i = 1; i <= operators; i++)
         if (!strike(session, p, d, (long)(i * lasts[p->kind] / period), found)) {
@@ -337,7 +353,8 @@ static inline closeness run_plot(plot *p, dice *d)
     draw_plot(p, d, &found);
     nt_session *session = NULL;
     nt_problem problem = {0};
-    if (nt_session_open(&session, &p->setup, &problem) != NT_OK) {
+    if (nt_session_open(&session, &p->setup, &problem) != NT_OK || take_promise(p) != NT_OK) {
+        nt_session_close(session);
         found.refused = problem;
         return found;
     }

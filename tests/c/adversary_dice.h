@@ -53,8 +53,8 @@ typedef struct plot {
     nt_rig believed;
     nt_settings settings; /* as the operator has set them */
     nt_faults faults;
-    nt_hazard hazard; /* of the believed rig, and what that promises */
-    nt_guarantee promised;
+    nt_guarantee promised; /* of the believed rig, wherever the tip can be led ... */
+    nt_reach reach;        /* ... which is here */
     double heights[MAP * MAP];
 } plot;
 

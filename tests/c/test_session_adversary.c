@@ -225,9 +225,8 @@ static void explain(attack kind, long seed)
         printf("fault %d: %d on %s from %g s for %g s: %g\n", i, (int)p.faults.list[i].kind,
                nt_channel_name(p.faults.list[i].channel), p.faults.list[i].start, p.faults.list[i].duration,
                p.faults.list[i].value);
-    printf("k_c %g N/m of %g N/m\nrelief %d, slope %g, pull-off %g N, snap-in %g N, stiffest %g N/m, unseen %g m\n",
-           p.setup.rig.probe.spring_constant, p.believed.probe.spring_constant, p.setup.map.heights != NULL,
-           p.hazard.slope, p.hazard.pull_off_force, p.hazard.snap_in, p.hazard.stiffness, p.hazard.unseen);
+    printf("k_c %g N/m of %g N/m\nrelief %d, slope %g\n", p.setup.rig.probe.spring_constant,
+           p.believed.probe.spring_constant, p.setup.map.heights != NULL, p.reach.slope);
     printf("limit %g, calibration %g, motion %g, ringing %g, snap-in %g, noise %g, zero %g N/s\n",
            p.settings.limits.force, g->calibration, g->motion, g->ringing, g->snap_in, g->noise, g->zero_drift);
     printf("failures %g %g %g %g\n", g->failure[0], g->failure[1], g->failure[2], g->failure[3]);

@@ -54,6 +54,51 @@ static void the_reach_is_that_of_the_path(void **state)
     nt_session_close(whole);
 }
 
+/* A hand of three axes leaves any path; a stage of one axis has the slope that it stands on, in any direction. */
+static void what_leads_the_tip_says_where_it_goes(void **state)
+{
+    (void)state;
+    static const double level[] = {50e-9, 300e-9, 150e-9, 300e-9};
+    nt_session_setup setup = over_a_ramp();
+    nt_session *whole = open_session(&setup);
+    setup.path = level;
+    setup.path_count = 2;
+    setup.rig.master.axes = 3.0;
+    nt_session *led = open_session(&setup);
+    assert_true(nt_session_reach(led).slope == nt_session_reach(whole).slope);
+    assert_true(nt_session_guarantee(led).force == nt_session_guarantee(whole).force);
+    setup = over_a_ramp();
+    setup.rig.stage.axes = 1.0;
+    setup.x = 450e-9; /* on the ramp */
+    nt_session *stands = open_session(&setup);
+    const nt_guarantee there = nt_session_guarantee(stands);
+    assert_true(fabs(nt_session_reach(stands).slope - 0.05) < 0.002 && nt_session_reach(stands).relief < 1e-12);
+    assert_true(there.lateral_force >= 0.0498 * there.force);
+    nt_session_close(stands);
+    nt_session_close(led);
+    nt_session_close(whole);
+}
+
+/* Where nothing else leads, a path holds what leads the tip: inputs, and requests, which are checked by the same call. */
+static void what_lies_beside_a_declared_path_is_refused(void **state)
+{
+    (void)state;
+    static const double level[] = {50e-9, 300e-9, 150e-9, 310e-9};
+    nt_session_setup setup = over_a_ramp();
+    setup.path = level;
+    setup.path_count = 2;
+    nt_session *session = open_session(&setup);
+    const nt_input on = {.x = 100e-9, .y = 305e-9}, off = {.x = 151e-9, .y = 305e-9}, above = {.x = 1e-7, .y = 4e-7};
+    nt_problem problem = {0};
+    assert_int_equal(nt_session_aim(session, &on, NULL), NT_OK);
+    assert_int_equal(nt_session_aim(session, &off, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "input.x beside the declared path");
+    assert_true(problem.minimum == level[0] && problem.maximum == level[2]);
+    assert_int_equal(nt_session_aim(session, &above, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "input.y beside the declared path");
+    nt_session_close(session);
+}
+
 /* The promise is nt_guarantee_compute's for the slope of the reach and the plan's jump and stiffness. */
 static void the_promise_knows_the_slope(void **state)
 {
@@ -111,6 +156,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_reach_is_that_of_the_path),
+        cmocka_unit_test(what_leads_the_tip_says_where_it_goes),
+        cmocka_unit_test(what_lies_beside_a_declared_path_is_refused),
         cmocka_unit_test(the_promise_knows_the_slope),
         cmocka_unit_test(the_master_has_room_to_draw_back),
         cmocka_unit_test(paths_that_leave_the_surface_are_refused),

@@ -32,7 +32,7 @@ typedef struct nt_session_setup {
     const nt_radius_map *radii;      /* of `surface`; NULL: its curvature is not felt */
     const nt_properties *properties; /* on the grid of `surface` or `map`; NULL: the scene's everywhere */
     double x, y;                     /* where it starts [m] */
-    const double *path; /* path_count points (x, y) that the tip will follow [m]; NULL: it may go anywhere */
+    const double *path; /* path_count points [m] that a master of one axis keeps around; NULL: it may go anywhere */
     long path_count;
     double clearance; /* L, height of the tip above the surface at the start; more than drifts in the preflight [m] */
     double rise; /* how far the master shall be able to draw back from a rising surface [m]; NaN: what is reached */
@@ -300,7 +300,7 @@ NT_API nt_margins nt_session_margins(const nt_session *session);
 NT_API nt_sideways_margins nt_session_sideways(const nt_session *session);
 /* That of a lever which taps, by the slow flow at the set point over a flat; infinite in other modes. */
 NT_API nt_verdict nt_session_tap(const nt_session *session);
-/* What of the surface it can reach, on its path or in its area. */
+/* What of the surface the tip can be led over: where the stage stands, around a declared path, or all of it. */
 NT_API nt_reach nt_session_reach(const nt_session *session);
 /* What holds whatever the operator does; to be read before the first tick. */
 NT_API nt_guarantee nt_session_guarantee(const nt_session *session);

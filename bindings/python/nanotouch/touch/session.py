@@ -60,8 +60,10 @@ class Session(Runs, Frozen):
         surface and hold the set-point there; a force-distance curve; follow the path at constant amplitude of a driven
         lever, as ``settings.tap`` says.
     path : sequence of (x, y), optional
-        Where the tip goes [m]: at least two points for ``"scan"`` and ``"topography"``, one otherwise. By default the
-        middle of the surface, or a line across it at mid-height.
+        Where the tip starts and goes [m]: at least two points for ``"scan"`` and ``"topography"``, one otherwise. By
+        default the middle of the surface, or a line across it at mid-height. Several points that are given keep a
+        master of one axis over a surface within the rectangle around them: what is promised holds there, and inputs
+        beyond are refused. Otherwise it holds wherever the tip can be led.
     settings : Settings, optional
         Gains and limits; by default those of :func:`settings_for_path` for the relief along the path and up to the
         scene's largest load, with the sample's pull-off clearly felt (:func:`nanotouch.touch.margins.felt_alpha_f`).
@@ -111,6 +113,7 @@ class Session(Runs, Frozen):
                 self._scene.core, self.rig.core, wanted.core, {
                     **dict(zip(("surface", "radii", "properties"), parts, strict=True)),
                     "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
+                    "declared": path is not None and len(self.path) > 1,
                     "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
                     "minimum_margin": self.minimum_margin, "relative_accuracy": self.relative_accuracy,
                     "preflight": options.get("preflight", True), "law": control if callable(control) else None,
@@ -186,12 +189,12 @@ class Session(Runs, Frozen):
         return self.margins().least
 
     def guarantee(self) -> Guarantee:
-        """What holds whatever the operator does, on this path; to be read before anything moves."""
+        """What holds whatever the operator does, wherever the tip can be led; to be read before anything moves."""
         return Guarantee(**self.core.guarantee)
 
     @property
     def force_overshoot(self) -> float:
-        """How far the force on the sample may exceed the set limit before the reaction shows, on this path [N]."""
+        """How far the force on the sample may exceed the set limit before the reaction shows [N]."""
         return self.guarantee().force - float(self.settings.limits.force)
 
     @property

@@ -106,7 +106,7 @@ class Guarantee(NamedTuple):
             f"after a stop help is needed within {_long(self.help_time)}; at once if the stage does not lift "
             f"({self.frame_drift * 1e9:.3g} nN more each second)",
         ]
-        if self.moves_sideways and self.lateral_force > 0.0:
+        if self.lateral_force > 0.0 and (self.moves_sideways or self.lateral_force > 1e-3 * self.force):
             lines.insert(2, f"sideways at most {self.lateral_force * 1e9:.4g} nN")
         if not self.moves_sideways:
             lines.append("the tip stays at its place, for the stage has one axis")
