@@ -80,9 +80,12 @@ def run(args: argparse.Namespace) -> int:
 
 def _calibration(args: argparse.Namespace) -> dict[str, Any]:
     """What is given in place of the file's own."""
-    units = {"spring_constant": "N/m", "sensitivity": "m/V"}
-    given = {name: getattr(args, name) for name in units}
-    return {name: parse_quantity(text, units[name]) for name, text in given.items() if text is not None}
+    given: dict[str, Any] = {}
+    if args.spring_constant is not None:
+        given["spring_constant"] = parse_quantity(args.spring_constant, "N/m")
+    if args.sensitivity is not None:
+        given["sensitivity"] = curves.parse_sensitivity(args.sensitivity)
+    return given
 
 
 def _picked(found: Sequence[curves.ForceCurve], args: argparse.Namespace) -> Sequence[curves.ForceCurve]:

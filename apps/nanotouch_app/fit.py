@@ -82,7 +82,7 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
     )  # fmt: skip
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
     parser.add_argument(
-        "--sensitivity", metavar="SENSITIVITY", help="deflection sensitivity in place of the file's, as 40nm/V"
+        "--sensitivity", metavar="SENSITIVITY", help="deflection sensitivity in place of the file's, as 40nm/V, or of NT-MDT's text as 40nm/nA"
     )
     parser.add_argument(
         "--calibration", metavar="FILE", help="CSV table of both for many files: file,spring_constant,sensitivity"
@@ -161,7 +161,7 @@ def reading(args: argparse.Namespace) -> dict[str, Any]:
     """How files are read, as arguments of :func:`nanotouch.curves.read`."""
     return {
         "spring_constant": _quantity(args.spring_constant, "N/m"),
-        "sensitivity": _quantity(args.sensitivity, "m/V"),
+        "sensitivity": None if args.sensitivity is None else nt.curves.parse_sensitivity(args.sensitivity),
         "calibration": args.calibration,
         "untrusted": args.untrusted,
     }

@@ -45,6 +45,7 @@ UNITS: dict[str, dict[str, float]] = {
     "rad/V": {"rad/V": 1.0, "deg/V": math.pi / 180.0},
     "Hz/V": {"Hz/V": 1.0, "kHz/V": 1e3},
     "m/V": _scaled("m", "un", "/V"),
+    "m/A": {"nm/nA": 1.0, "um/nA": 1e3, "nm/pA": 1e3, "nm/uA": 1e-3, "m/A": 1.0},
     "m/s": _scaled("m", "mun", "/s"),
     "N/V": _scaled("N", "munp", "/V"),
     "N/s": _scaled("N", "mk", "/s"),

@@ -9,7 +9,7 @@
 from .adhesion import Adhesion, adhesion_of
 from .analysis import analyse, force_gap, sensitivity
 from .baseline import Baseline, Bend, Wave
-from .calibration import Calibration, CalibrationTable
+from .calibration import Calibration, CalibrationTable, parse_sensitivity
 from .chain import Chain, chains
 from .curve import ForceCurve, Segment
 from .events import Rupture
@@ -47,6 +47,7 @@ __all__ = [
     "read",
     "recalibrate",
     "sader",
+    "parse_sensitivity",
     "sensitivity",
     "stream",
     "synthesise",

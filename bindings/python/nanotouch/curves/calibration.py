@@ -2,8 +2,11 @@
 """Spring constant and deflection sensitivity: what a file states, what is given in its place, and what follows.
 
 The detector's volts u are what is measured: deflection = s u, force = k_c s u. A corrected s rescales both, a corrected
-k_c the force alone. z is the height of the base, which the stage moves: neither changes it. The tip, at z + deflection,
-moves with s.
+k_c the force alone, and with them what a file states as a force (the setpoint). z is the height of the base, which the
+stage moves: neither changes it. The tip, at z + deflection, moves with s.
+
+NT-MDT's detectors read amperes, so their s is in m/A. The ranges of both units have nothing in common, so that one given
+for the wrong detector is refused.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ import csv
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
+from functools import partial
 from os import PathLike
 from pathlib import Path
 
@@ -22,6 +26,8 @@ from .curve import ForceCurve
 
 SPRING_CONSTANT_RANGE = (1e-4, 1e4)  # [N/m]
 SENSITIVITY_RANGE = (1e-10, 1e-4)  # [m/V]
+SENSITIVITY_PER_AMPERE = (1e-1, 1e5)  # [m/A]: 0.1 nm to 100 um per nA
+DETECTOR = "detector unit"  # of meta: what the sensitivity is per; V where it is not stated
 #: What instruments write where nobody calibrated: 1 N/m, Bruker's 0.999 N/m; 1 m/V, 1 um/V, 1 nm/V, Asylum's 100 nm/V.
 PLACEHOLDERS: Mapping[str, tuple[float, ...]] = {
     "spring constant": (0.999, 1.0),
@@ -29,6 +35,7 @@ PLACEHOLDERS: Mapping[str, tuple[float, ...]] = {
 }
 _UNITS = {"spring constant": "N/m", "sensitivity": "m/V"}
 _RANGES = {"spring constant": SPRING_CONSTANT_RANGE, "sensitivity": SENSITIVITY_RANGE}
+_FORCES = ("setpoint",)  # of meta
 _COLUMNS = ("file", "spring_constant", "sensitivity")
 
 
@@ -41,7 +48,7 @@ class Calibration:
     spring_constant : float, optional
         k_c [N/m], 1e-4 .. 1e4.
     sensitivity : float, optional
-        Deflection sensitivity [m/V], 1e-10 .. 1e-4.
+        Deflection sensitivity [m/V], 1e-10 .. 1e-4; of a detector that reads amperes [m/A], 0.1 .. 1e5.
     """
 
     spring_constant: float | None = None
@@ -50,9 +57,10 @@ class Calibration:
     def __post_init__(self) -> None:
         for key, value in self.given.items():
             (low, high), unit = _RANGES[key], _UNITS[key]
-            if value is not None and not low <= value <= high:
-                name = key.replace(" ", "_")
-                raise InvalidValue(f"{name}: {value!r} {unit}, expected {low:g} .. {high:g} {unit}")
+            if value is None or low <= value <= high or (key == "sensitivity" and _per_ampere(value)):
+                continue
+            name = key.replace(" ", "_")
+            raise InvalidValue(f"{name}: {value!r} {unit}, expected {low:g} .. {high:g} {unit}")
 
     @property
     def given(self) -> dict[str, float | None]:
@@ -107,6 +115,30 @@ def _matches(pattern: str, file: Path) -> bool:
     return fnmatchcase(path.as_posix(), f"*/{pattern}") if "/" in pattern else fnmatchcase(path.name, pattern)
 
 
+def parse_sensitivity(text: str) -> float:
+    """``"50nm/V"`` [m/V], or ``"50nm/nA"`` [m/A]."""
+    try:
+        return parse_quantity(text, "m/A")
+    except InvalidValue:
+        return parse_quantity(text, "m/V")
+
+
+def _per_ampere(value: float) -> bool:
+    return SENSITIVITY_PER_AMPERE[0] <= value <= SENSITIVITY_PER_AMPERE[1]
+
+
+def check_detector(sensitivity: float, detector: str, file: Path) -> None:
+    """Refuse a sensitivity that is given for a detector of the other unit."""
+    low, high = SENSITIVITY_PER_AMPERE if detector == "A" else SENSITIVITY_RANGE
+    if low <= sensitivity <= high:
+        return
+    example = "50nm/nA" if detector == "A" else "50nm/V"
+    raise ReadError(
+        f"{file}: sensitivity {sensitivity:g}: its detector reads {detector}, so it is in m/{detector}, "
+        f"{low:g} .. {high:g} m/{detector}, as {example}"
+    )
+
+
 def _rows(file: Path, lines: list[str]) -> Iterator[tuple[str, Calibration]]:
     reader = csv.DictReader(lines)
     names = [str(name).strip() for name in reader.fieldnames or ()]
@@ -124,7 +156,8 @@ def _row_values(file: Path, number: int, row: Mapping[str, str | None]) -> Calib
     for key, unit in _UNITS.items():
         text = (row.get(key.replace(" ", "_")) or "").strip()
         try:
-            values[key.replace(" ", "_")] = parse_quantity(text, unit) if text else None
+            parse = parse_sensitivity if key == "sensitivity" else partial(parse_quantity, unit=unit)
+            values[key.replace(" ", "_")] = parse(text) if text else None
         except InvalidValue as error:
             raise ReadError(f"{file}: row {number}: {error}") from None
     try:
@@ -146,11 +179,16 @@ def calibrated(curve: ForceCurve, calibration: Calibration, file: Path) -> Force
             scale *= value / meta[key]
             bend *= value / meta[key] if key == "sensitivity" else 1.0
         meta[key] = value
+    if calibration.sensitivity is not None:
+        check_detector(calibration.sensitivity, str(meta.get(DETECTOR, "V")), file)
+    for key in _FORCES:
+        if scale != 1.0 and isinstance(meta.get(key), float):
+            meta[key] *= scale
     left = tuple(k for k, known in PLACEHOLDERS.items() if calibration.given[k] is None and meta.get(k) in known)
     if left:
         meta["placeholders"] = left
     for key, (low, high) in _RANGES.items():
-        stated = meta.get(key)
+        stated = None if key == "sensitivity" and meta.get(DETECTOR) == "A" else meta.get(key)
         if stated is not None and key not in left and not low <= stated <= high:
             unit = _UNITS[key]
             raise ReadError(f"{file}: {key} {stated:g} {unit}, expected {low:g} .. {high:g} {unit}; give it")

@@ -90,13 +90,34 @@ class ForceCurve:
 
     @property
     def approach(self) -> Segment | None:
-        """The first approach; None if there is none."""
-        return next((s for s in self.segments if s.role == "approach"), None)
+        """The first approach, with what goes on in its direction after a pause; None if there is none."""
+        return self._joined("approach", self.parts("approach"))
 
     @property
     def retract(self) -> Segment | None:
-        """The last retraction; None if there is none."""
-        return next((s for s in reversed(self.segments) if s.role == "retract"), None)
+        """The last retraction, with what went before it in its direction; None if there is none."""
+        return self._joined("retract", self.parts("retract"))
+
+    def parts(self, role: Literal["approach", "retract"]) -> tuple[Segment, ...]:
+        """The segments that make up the approach or the retraction: those between which the base only rests."""
+        order = self.segments if role == "approach" else self.segments[::-1]
+        found: list[Segment] = []
+        for segment in order:
+            if segment.role == role:
+                found.append(segment)
+            elif segment.role != "pause" and found:
+                break
+        return tuple(found if role == "approach" else found[::-1])
+
+    def _joined(self, role: Role, parts: tuple[Segment, ...]) -> Segment | None:
+        if len(parts) < 2:
+            return parts[0] if parts else None
+        columns = {
+            key: None if any(getattr(one, key) is None for one in parts)
+            else np.concatenate([getattr(one, key) for one in parts])
+            for key in ("time", "z", "force", "deflection")
+        }  # fmt: skip
+        return Segment(role, z_channel=parts[0].z_channel, **columns)  # type: ignore[arg-type]
 
     @property
     def spring_constant(self) -> float | None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """JPK force curves and maps: ``.jpk-force``, ``.jpk-force-map``, ``.jpk-qi-data``, ``.jpk-qi-series``.
 
-A zip archive of Java property files and big-endian integers. A single curve has its segments in ``segments/``, a map
+A zip archive of Java property files and big-endian numbers: integers, or floats where JPK's data processing saved it. A single curve has its segments in ``segments/``, a map
 in ``index/N/segments/``. A segment's ``segment-header.properties`` says style and duration, and for each channel how
 its integers become volts (*encoder*) and these what is meant, slot by slot (*conversion set*: volts, distance, force).
 What many segments share stands once in ``shared-data/header.properties``: ``channel.height.lcd-info.*=0`` stands for
@@ -36,15 +36,16 @@ NAME = "nanotouch/jpk"
 ENDINGS = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
 _TYPES = {"signedshort": ">i2", "unsignedshort": ">u2", "signedinteger": ">i4", "unsignedinteger": ">u4",
           "signedlong": ">i8"}  # fmt: skip
+_FLOATS = {"float-data": ">f4", "double-data": ">f8", "float": ">f4", "double": ">f8"}
 #: Channel in the archive, slot, and column under afmformats' name; a sensor before a voltage times a constant.
-_HEIGHTS = (
+HEIGHTS = (
     ("measuredHeight", "nominal", "height (measured)"),
     ("capacitiveSensorHeight", "nominal", "height (measured)"),
     ("strainGaugeHeight", "nominal", "height (measured)"),
     ("height", "calibrated", "height (piezo)"),
     ("head-height", "calibrated", "height (piezo)"),
 )
-_ROLES: dict[str, Role] = {"extend": "approach", "pause": "pause", "retract": "retract"}
+ROLES: dict[str, Role] = {"extend": "approach", "pause": "pause", "retract": "retract"}
 _KINDS = ("force-scan-map", "force-scan-series", "quantitative-imaging-map", "quantitative-imaging-series")
 _GRID = {"center x": "xcenter", "center y": "ycenter", "shape x": "ilength", "shape y": "jlength",
          "size x": "ulength", "size y": "vlength"}  # fmt: skip
@@ -119,13 +120,13 @@ class Archive:
             place = f"{folder}segments/{count}/"
             facts = _Facts(self.file, place, own | self._expanded(place) | self._general)
             style, duration = facts.text(f"{_SETTINGS}style"), facts.number("force-segment-header.duration")
-            if style in _ROLES:
+            if style in ROLES:
                 segments.append(self._segment(facts, place, start, meta))
             else:
                 left_out[style] += 1
             start, count = start + duration, count + 1
         if not segments:
-            styles = f" of style {', '.join(_ROLES)}, only {', '.join(left_out)}" if left_out else ""
+            styles = f" of style {', '.join(ROLES)}, only {', '.join(left_out)}" if left_out else ""
             raise ReadError(f"{self.file}: curve {enum} has no segments{styles}")
         if left_out:
             meta["notes"] = tuple(f"{counted(n, 'segment')} of style {s!r} left out" for s, n in left_out.items())
@@ -170,7 +171,7 @@ class Archive:
         return found
 
     def _segment(self, facts: _Facts, place: str, start: float, meta: dict[str, Any]) -> Segment:
-        role = _ROLES[facts.text(f"{_SETTINGS}style")]
+        role = ROLES[facts.text(f"{_SETTINGS}style")]
         duration = facts.number("force-segment-header.duration")
         channel, slot, column = self._height(place)
         z = facts.converted(channel, slot, self._raw(facts, place, channel))
@@ -200,17 +201,21 @@ class Archive:
         return volts * meta["sensitivity"] + offset, float(meta["spring constant"])
 
     def _height(self, place: str) -> tuple[str, str, str]:
-        for channel, slot, column in _HEIGHTS:
+        for channel, slot, column in HEIGHTS:
             if f"{place}channels/{channel}.dat" in self._names:
                 return channel, slot, column
         raise ReadError(f"{self.file}: {place} has no height")
 
     def _raw(self, facts: _Facts, place: str, channel: str) -> NDArray[Any]:
         name = f"{place}channels/{channel}.dat"
-        kind = facts.either(f"channel.{channel}.data.encoder.type", f"channel.{channel}.encoder.type")
-        if name not in self._names or kind not in _TYPES:
+        kind = facts.number_type(channel)
+        if name not in self._names or kind not in _TYPES | _FLOATS:
             raise ReadError(f"{self.file}: {name} is missing, or of the type {kind!r}, which is not read")
-        return np.frombuffer(self._zip.read(name), _TYPES[kind])
+        raw = self._zip.read(name)
+        dtype = np.dtype((_TYPES | _FLOATS)[kind])
+        if len(raw) % dtype.itemsize:
+            raise ReadError(f"{self.file}: {name} has {len(raw)} bytes, no whole number of {kind!r}")
+        return np.frombuffer(raw, dtype)
 
 
 class _Facts:
@@ -233,6 +238,14 @@ class _Facts:
             raise ReadError(f"{self.file}: {self.place}: {key!r} is {self.either(key, other or key)!r}, no number")
         return value
 
+    def number_type(self, channel: str) -> str:
+        """Of the encoder; of the data where there is none, as in float data."""
+        for key in (f"channel.{channel}.data.encoder.type", f"channel.{channel}.encoder.type",
+                    f"channel.{channel}.data.type", f"channel.{channel}.type"):  # fmt: skip
+            if key in self.properties:
+                return self.properties[key]
+        return self.text(f"channel.{channel}.data.encoder.type")
+
     def converted(self, channel: str, slot: str, raw: NDArray[Any]) -> NDArray[np.float64]:
         """The integers in the unit of `slot`: what leads from the base to it, and before that the encoder."""
         encoder, other = f"channel.{channel}.data.encoder.scaling.", f"channel.{channel}.encoder.scaling."
@@ -244,8 +257,11 @@ class _Facts:
                 raise ReadError(f"{self.file}: {self.place}: the conversions of {channel} go round")
             steps.append(f"{conversions}conversion.{slot}.")
             slot = self.text(f"{steps[-1]}base-calibration-slot")
-        values = raw * self.number(f"{encoder}multiplier", f"{other}multiplier")
-        values += self.number(f"{encoder}offset", f"{other}offset")
+        if self.number_type(channel) in _FLOATS:
+            values = raw.astype(np.float64)
+        else:
+            values = raw * self.number(f"{encoder}multiplier", f"{other}multiplier")
+            values += self.number(f"{encoder}offset", f"{other}offset")
         for step in reversed(steps):
             values *= self.number(f"{step}scaling.multiplier")
             values += self.number(f"{step}scaling.offset")

@@ -13,7 +13,7 @@ from .._io.readers import head_of, registered_for
 from .._io.words import printable
 from ..errors import ReadError
 from ..formats import refusal
-from . import afm_formats, archive, asylum_pair, jpk, nanonis, nanoscope
+from . import afm_formats, archive, asylum_pair, jpk, jpk_text, nanonis, nanoscope, nova
 from .calibration import Calibration, CalibrationTable, calibrated
 from .checks import check_curve
 from .curve import ForceCurve, Segment
@@ -40,7 +40,8 @@ def read(
     spring_constant : float, optional
         k_c [N/m], 1e-4 .. 1e4, in place of the file's; forces are rescaled, deflections stay.
     sensitivity : float, optional
-        Deflection sensitivity [m/V], 1e-10 .. 1e-4, in place of the file's; forces and deflections are rescaled.
+        Deflection sensitivity [m/V], 1e-10 .. 1e-4, in place of the file's; forces and deflections are rescaled. Of
+        NT-MDT's text, whose detector reads amperes, in m/A, 0.1 .. 1e5.
     calibration : CalibrationTable or path, optional
         The same for many files, by name; the two arguments above count more.
     untrusted : bool
@@ -146,9 +147,10 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
     if file.suffix.lower() in jpk.ENDINGS:
         with guarded(file, jpk.NAME):
             return jpk.NAME, jpk.read(file, given)
-    if nanonis.recognises(file, head):
-        with guarded(file, nanonis.NAME):
-            return nanonis.NAME, nanonis.read(file, given)
+    for own in (nanonis, jpk_text, nova):
+        if own.recognises(file, head):
+            with guarded(file, own.NAME):
+                return own.NAME, own.read(file, given)
     if asylum_pair.recognises(file):
         with guarded(file, asylum_pair.NAME):
             return asylum_pair.NAME, asylum_pair.read(file, given)

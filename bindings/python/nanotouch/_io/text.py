@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Text of others: byte-order marks, encodings, decimal commas, semicolons.
+
+Everything that a table of numbers is written with is brought to one form, points and tabs, before anybody reads it.
+"""
+
+from __future__ import annotations
+
+import codecs
+import io
+import re
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+_MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
+_ROW = re.compile(r"[-+\d.,;\seE]*\d[-+\d.,;\seE]*|(?i:[-+\d.,;\se]|nan|bad|inf(?:inity)?)+")
+_LOOKED_AT = 200  # rows
+_SHIFT_JIS_MICRO = "\x83\xca"  # as latin-1
+
+
+class NotATable(ValueError):
+    """What stands there are no numbers that can be told apart."""
+
+
+def is_text(raw: bytes) -> bool:
+    """Whether bytes are text: with a byte-order mark, or without the characters that no text has."""
+    if any(raw.startswith(mark) for mark, _ in _MARKS):
+        return True
+    return not re.search(rb"[\x00-\x08\x0e-\x1f]", raw)
+
+
+def decoded(raw: bytes) -> str:
+    """By the byte-order mark, else UTF-8, else latin-1; without the mark."""
+    for mark, codec in _MARKS:
+        if raw.startswith(mark):
+            return raw[len(mark) :].decode(codec, "replace")
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1").replace(_SHIFT_JIS_MICRO, "µ")
+
+
+def is_row(line: str) -> bool:
+    """Whether a line holds nothing but numbers."""
+    return bool(line.strip()) and any(c.isdigit() for c in line) and _ROW.fullmatch(line) is not None
+
+
+def plain(text: str) -> str:
+    """The same with decimal points, and with tabs between the numbers of a row; an empty cell becomes ``nan``.
+
+    Raises
+    ------
+    NotATable
+        If points and commas cannot be told apart.
+    """
+    lines = text.splitlines()
+    sample = [line for line in lines if is_row(line)][:_LOOKED_AT]
+    comma = _is_decimal("\n".join(sample))
+    cells = ";" if any(";" in line for line in sample) else "\t" if any("\t" in line for line in sample) else ""
+    cells = "," if not (comma or cells) and any("," in line for line in sample) else cells
+    return "\n".join(_row(line, comma, cells) if is_row(line) else _words(line, comma) for line in lines) + "\n"
+
+
+def table(rows: Sequence[str]) -> NDArray[np.float64]:
+    """Rows of :func:`plain` as numbers, shape (rows, columns)."""
+    try:
+        return np.loadtxt(io.StringIO("\n".join(rows)), dtype=np.float64, ndmin=2, comments=None)
+    except ValueError as error:
+        raise NotATable(str(error)) from None
+
+
+def _is_decimal(sample: str) -> bool:
+    """Whether commas are decimal ones; NotATable where they may be either."""
+    if not re.search(r"\d,\d", sample):
+        return False
+    if re.search(r"\d\.\d", sample):
+        if re.search(r"\d\.\d{3},\d", sample) or re.search(r"\d,\d{3}\.\d", sample):
+            raise NotATable("its numbers have thousands separators")
+        return False
+    if re.search(r"[;\t]|\d[ ]+[-+\d]", sample) and not re.search(r"\d,[ ]", sample):
+        return True
+    if re.search(r",[-+]?0\d", sample):
+        raise NotATable("commas stand both in its numbers and between them")
+    return False
+
+
+def _row(line: str, comma: bool, cells: str) -> str:
+    text = line.replace(",", ".") if comma else line
+    if not cells:
+        return "\t".join(text.split())
+    parts = [part.strip() or "nan" for part in text.rstrip().removesuffix(cells).split(cells)]
+    return "\t".join(" ".join(part.split()).replace(" ", "\t") for part in parts)
+
+
+def _words(line: str, comma: bool) -> str:
+    return re.sub(r"(?<=\d),(?=\d)", ".", line) if comma else line
