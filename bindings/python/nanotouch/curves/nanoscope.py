@@ -2,7 +2,8 @@
 """Bruker NanoScope force files: ramps, force volumes, PeakForce captures; deflection over the way of the piezo.
 
 The data of a force image are int16, from version 9.2 on int32: for each curve the approach and then the retraction,
-both from the deepest point outwards. ``Samps/line`` counts the retraction first. Samples of a ramp stand its size over
+both from the deepest point outwards. ``Samps/line`` counts the retraction first. Where the branches differ in length,
+both are stored as long as the longer one, and what follows in the shorter one is no data. Samples of a ramp stand its size over
 the points of the retraction apart; where no ramp is stated, the height sensor's channel is z. Samples that were never
 taken, at the end of a branch, are 0 or the lowest integer: no data, and left out.
 """
@@ -29,6 +30,7 @@ NAME = "nanotouch/nanoscope"
 SIGNATURES = header.SIGNATURES
 _VERSION_32BIT = 0x09200000  # from here on integers take 4 bytes, whatever "Bytes/pixel" says of their scale
 _DEFLECTION = ("DeflectionError", "Deflection")
+_LEADS_UP = 5.0  # steps from the last reading to a zero that was read
 _FAR = 0.125  # of a period; how far the largest deflection of a capture may lie from its turn without a note
 Bools = NDArray[np.bool_]
 
@@ -51,7 +53,7 @@ def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]
     image = _deflection_image(file, found)
     meta, notes = _meta(found, image, calibration or Calibration())
     near, far = _points(found, image)
-    raw = _raw(found, image, near + far)
+    raw = _raw(found, image, near, far)
     known, raw = _in_time(~_fillers(raw, near), near), _in_time(raw, near)
     deflection = raw * (image.must_be_scaled(":Z scale")[1] * meta["sensitivity"])
     if _is_capture(found):
@@ -63,7 +65,7 @@ def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]
     if len(enough) < len(raw):
         notes += (f"{counted(len(raw) - len(enough), 'curve')} of {len(raw)} without data left out",)
     meta |= way.meta | ({"notes": notes + way.notes} if notes + way.notes else {})
-    line = _line(found) if len(raw) > 1 else 1
+    line = _line(found, len(raw)) if len(raw) > 1 else 1
     size = header.scan_size(found)
     return [
         ForceCurve(
@@ -137,11 +139,19 @@ def _points(found: list[Section], image: Section) -> tuple[int, int]:
     return (far, far) if _is_capture(found) else (near, far)
 
 
-def _line(found: list[Section]) -> int:
-    """Curves per line of a map."""
-    if _is_capture(found):
-        return header.section(found, "Ciao scan list").counts("Samps/line")[0]
-    return header.section(found, "Ciao force list").counts("force/line")[0]
+def _line(found: list[Section], count: int) -> int:
+    """Curves per line of a map: as its picture has them, or what the header says of its lines."""
+    for one in found:
+        if one.name == "Ciao image list" and {"samps/line", "number of lines"} <= set(one):
+            samples, lines = one.counts("Samps/line")[0], one.counts("Number of lines")[0]
+            if samples * lines == count:
+                return samples
+    said = [("Ciao scan list", "Samps/line"), ("Ciao force list", "force/line")]
+    for name, key in said if _is_capture(found) else said[::-1]:
+        line = header.section(found, name).counts(key)[0]
+        if line > 1 and count % line == 0:
+            return line
+    return 1
 
 
 def _place(number: int, line: int, count: int, size: tuple[float, float] | None) -> dict[str, Any]:
@@ -158,8 +168,9 @@ def _place(number: int, line: int, count: int, size: tuple[float, float] | None)
 # --- data -------------------------------------------------------------------------------------------------------------
 
 
-def _raw(found: list[Section], image: Section, points: int) -> NDArray[np.signedinteger[Any]]:
+def _raw(found: list[Section], image: Section, near: int, far: int) -> NDArray[np.signedinteger[Any]]:
     """The integers as stored, shape (curves, approach + retraction)."""
+    points, blocks = near + far, 2 * max(near, far)
     file, width = image.file, image.counts("Bytes/pixel")[0]
     if header.version(found) >= _VERSION_32BIT:
         width = 4
@@ -169,11 +180,15 @@ def _raw(found: list[Section], image: Section, points: int) -> NDArray[np.signed
     held = file.stat().st_size
     if offset + length > held:
         raise ReadError(f"{file}: {held} bytes long, but its data end at {offset + length}: it is cut off")
-    if length == 0 or length % (width * points):
+    stored = points if length % (width * points) == 0 else blocks
+    if length == 0 or length % (width * stored):
         raise ReadError(f"{file}: {length} bytes of data are no whole number of curves of {points} points")
     if length // width > MAX_POINTS:
         raise ReadError(f"{file}: {length // width} points in all; up to {MAX_POINTS} are read")
-    return np.fromfile(file, f"<i{width}", length // width, offset=offset).reshape(-1, points)
+    raw = np.fromfile(file, f"<i{width}", length // width, offset=offset).reshape(-1, stored)
+    if stored == points:
+        return raw
+    return np.concatenate([raw[:, :near], raw[:, blocks // 2 : blocks // 2 + far]], axis=1)
 
 
 def _in_time(stored: NDArray[Any], near: int) -> NDArray[Any]:
@@ -184,7 +199,8 @@ def _in_time(stored: NDArray[Any], near: int) -> NDArray[Any]:
 def _fillers(raw: NDArray[np.signedinteger[Any]], near: int) -> Bools:
     """Samples at the ends of a branch that were never taken.
 
-    Zeros over more than half of both branches are a free cantilever on a coarse digitiser, not fillers.
+    Zeros over more than half of both branches are a free cantilever on a coarse digitiser, not fillers; nor is a single
+    one beside values of about 0.
     """
     lowest, zero = raw == np.iinfo(raw.dtype).min, raw == 0
     found, runs = np.zeros(raw.shape, bool), []
@@ -192,11 +208,22 @@ def _fillers(raw: NDArray[np.signedinteger[Any]], near: int) -> Bools:
         filler = zero[:, part] | lowest[:, part]
         before = np.logical_and.accumulate(filler, axis=1)
         after = np.logical_and.accumulate(filler[:, ::-1], axis=1)[:, ::-1]
-        found[:, part] = before | after
+        found[:, part] = (before | after) & ~_read_as_zero(raw[:, part], zero[:, part], before | after)
         runs.append(after.mean(axis=1) > 0.5)
     free = runs[0] & runs[1] & ~zero.all(axis=1)
     found[free] = lowest[free]
     return found
+
+
+def _read_as_zero(raw: NDArray[Any], zero: Bools, filler: Bools) -> Bools:
+    """Single zeros at the end of a branch that its readings lead up to."""
+    single = zero & filler
+    single[:, 1:] &= ~filler[:, :-1]
+    single[:, :-1] &= ~filler[:, 1:]
+    steps = np.median(np.abs(np.diff(raw.astype(np.float64), axis=1)), axis=1)
+    beside = np.zeros(raw.shape)
+    beside[:, 0], beside[:, -1] = np.abs(raw[:, 1].astype(np.float64)), np.abs(raw[:, -2].astype(np.float64))
+    return np.asarray(single & (beside <= _LEADS_UP * steps[:, None]))
 
 
 def _enough(known: Bools, near: int) -> Bools:
@@ -232,7 +259,7 @@ def _sensor(found: list[Section], near: int, far: int) -> _Way:
     if image is None:
         raise ReadError(f"{found[0].file}: its header lacks ':Ramp size' with a scale, and it has no height sensor")
     name, volts_per_lsb, _ = image.must_be_scaled(":Z scale")
-    stored = _raw(found, image, near + far) * (volts_per_lsb * header.piezo(found, name))
+    stored = _raw(found, image, near, far) * (volts_per_lsb * header.piezo(found, name))
     outwards = np.median(stored[:, near - 1] - stored[:, 0]) > 0
     z = _in_time(stored if outwards else -stored, near)
     return _Way(near, z - z.min(), np.full(near + far, np.nan), "height (measured)")

@@ -13,7 +13,7 @@ from .._io.readers import head_of, registered_for
 from .._io.words import printable
 from ..errors import ReadError
 from ..formats import refusal
-from . import afm_formats, archive, asylum_pair, jpk, jpk_text, nanonis, nanoscope, nova
+from . import afm_formats, archive, asylum, asylum_pair, jpk, jpk_text, nanonis, nanoscope, nova
 from .calibration import Calibration, CalibrationTable, calibrated
 from .checks import check_curve
 from .curve import ForceCurve, Segment
@@ -157,6 +157,11 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
     if archive.recognises(file, head):
         with guarded(file, archive.NAME):
             return archive.NAME, archive.read(file, lambda one: _loaded(checked_path(one), given)[1])
+    if file.suffix.lower() == ".ibw":
+        with guarded(file, asylum.NAME):
+            table = asylum.read(file, given)
+        if table is not None:
+            return asylum.NAME, table
     refused = refusal(file, head, "curves")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Asylum force curves in one Igor binary wave: columns ``Raw``, ``Defl``, ``ZSnsr`` [m], and a note.
+
+The travel of the base grows towards the sample, so z is its negative. The note says with ``Indexes`` where the movements
+end and with ``Direction`` what they are: 1 towards the sample, 0 a dwell, -1 away. Where it does not, the curve is cut at
+its deepest point. Nothing in the note is needed to read the curve but what turns deflections into forces.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._arrays import Floats
+from .._io.files import checked_path, refuse_traps
+from .._io.readers import head_of
+from .._io.words import counted, printable
+from ..errors import ReadError, require
+from .calibration import Calibration
+from .checks import MAX_POINTS, MIN_POINTS
+from .curve import ForceCurve, Role, Segment
+
+NAME = "nanotouch/asylum"
+HEIGHTS = (("ZSnsr", "height (measured)"), ("ZSensor", "height (measured)"), ("LVDT", "height (measured)"),
+           ("Raw", "height (piezo)"), ("Height", "height (piezo)"))  # fmt: skip
+_DEFLECTIONS = ("Defl", "Deflection")
+_NUMBERS = {"NumPtsPerSec": ("rate approach", "rate retract"), "InputTime": ("duration",),
+            "ApproachVelocity": ("speed approach",), "RetractVelocity": ("speed retract",)}  # fmt: skip
+_TEXTS = {"MicroscopeModel": "instrument", "Version": "software version", "Date": "date", "Time": "time"}
+_REST = 0.1  # of the travel; a movement over less is a pause
+_ROLES: Mapping[int, Role] = {1: "approach", 0: "pause", -1: "retract"}
+
+
+def read(file: Path, calibration: Calibration) -> list[ForceCurve] | None:
+    """The one curve; None for a wave that is no table of deflections and heights."""
+    wave, note = wave_of(file)
+    columns = _labels(wave, file)
+    deflection_name = next((name for name in _DEFLECTIONS if name in columns), None)
+    height = next((one for one in HEIGHTS if one[0] in columns), None)
+    if deflection_name is None or height is None:
+        return None
+    values = np.asarray(wave["wData"], np.float64)
+    if not MIN_POINTS <= len(values) <= MAX_POINTS:
+        raise ReadError(f"{file}: a wave of {len(values)} points, expected at least {MIN_POINTS}")
+    deflection, z = values[:, columns.index(deflection_name)], -values[:, columns.index(height[0])]
+    meta = _meta(file, note, calibration)
+    segments, notes = segments_of(note, z, deflection, height[1], meta.get("spring constant"))
+    known = np.isfinite(z) & np.isfinite(deflection)
+    if not known.any():
+        raise ReadError(f"{file}: no sample has both {height[0]!r} and {deflection_name!r}")
+    meta |= {"point count": int(known.sum()), "segment count": len(segments), "z range": float(np.ptp(z[known]))}
+    if notes:
+        meta["notes"] = notes
+    return [ForceCurve(segments, meta, printable(file.name))]
+
+
+def wave_of(file: Path) -> tuple[Any, str]:
+    """A wave, and its note with ends of lines as here."""
+    checked_path(file)
+    refuse_traps(file, head_of(file))
+    wave = require("igor2.binarywave", "curves").load(str(file))["wave"]
+    return wave, bytes(wave["note"]).decode("latin-1").replace("\r", "\n")
+
+
+def _labels(wave: Any, file: Path) -> list[str]:
+    """Names of the columns; empty for a wave that is no table."""
+    values = wave["wData"]
+    if np.ndim(values) != 2:
+        return []
+    names = [bytes(name).decode("latin-1") for axis in wave["labels"] for name in axis if name]
+    if names and len(names) != values.shape[1]:
+        raise ReadError(f"{file}: {values.shape[1]} columns, but {len(names)} names: {', '.join(names)}")
+    return names
+
+
+def _meta(file: Path, note: str, calibration: Calibration) -> dict[str, Any]:
+    """What the note says, under afmformats' keys."""
+    stiffness = stated(note, "SpringConstant") or calibration.spring_constant
+    numbers = {"spring constant": stiffness, "sensitivity": stated(note, "InvOLS")}
+    if text_of(note, "TriggerChannel") == "Force":
+        numbers["setpoint"] = stated(note, "TriggerPoint")
+    for key, names in _NUMBERS.items():
+        numbers |= dict.fromkeys(names, stated(note, key))
+    texts = {name: text_of(note, key) for key, name in _TEXTS.items()}
+    texts["feedback mode"] = text_of(note, "ImagingMode").lower()
+    meta: dict[str, Any] = {"imaging mode": "force-distance", "software": "Asylum Research", "path": file, "enum": 0}
+    meta |= {key: value for key, value in numbers.items() if value is not None}
+    meta |= {key: value for key, value in texts.items() if value}
+    return meta | {"format": "Asylum Research (binarywave)"}
+
+
+def text_of(note: str, key: str) -> str:
+    """What the note says of a key; empty where nothing."""
+    match = re.search(rf"(?m)^{key}:[ \t]*(.*?)[ \t]*$", note)
+    return match[1] if match else ""
+
+
+def stated(note: str, key: str) -> float | None:
+    """A positive number of the note."""
+    try:
+        value = float(text_of(note, key))
+    except ValueError:
+        return None
+    return value if 0.0 < value < np.inf else None
+
+
+def segments_of(
+    note: str, z: Floats, deflection: Floats, channel: str, stiffness: float | None
+) -> tuple[tuple[Segment, ...], tuple[str, ...]]:
+    """The movements, and what was left out or is missing."""
+    known = np.isfinite(z) & np.isfinite(deflection)
+    notes = [] if stiffness is not None else ["states no spring constant: deflections alone; give it for forces"]
+    if not known.all():
+        notes.append(f"{counted(int(np.count_nonzero(~known)), 'sample')} without a number left out")
+    segments = []
+    travel = float(np.ptp(z[known])) if known.any() else 0.0
+    for part, direction in _parts(note, z, known, notes):
+        inside = np.flatnonzero(known[part]) + part.start
+        way, bent = z[inside], deflection[inside]
+        time = np.full(inside.size, np.nan)  # the wave's step is not that of stored points
+        force = None if stiffness is None else bent * stiffness
+        segments.append(Segment(_role(way, travel, direction), time, way, channel, force, bent))
+    return tuple(segments), tuple(notes)
+
+
+def _parts(
+    note: str, z: Floats, known: NDArray[np.bool_], notes: list[str]
+) -> list[tuple[slice, int | None]]:
+    """Runs of points between the indexes of the note, and their direction; without any, up to the deepest point and from
+    there on."""
+    ends = [int(word) for word in re.findall(r"\d+", text_of(note, "Indexes"))]
+    words = [word.strip() for word in text_of(note, "Direction").split(",") if word.strip()][1:]
+    directions = [int(float(word)) if re.fullmatch(r"[-+]?[01](\.0*)?", word) else None for word in words]
+    if any(b < a for a, b in pairwise(ends)) or (ends and ends[-1] > z.size):
+        notes.append(f"the note's Indexes ({text_of(note, 'Indexes')}) do not fit {z.size} points: cut at the deepest")
+        ends = []
+    edges = sorted({min(end + (number > 0), z.size) for number, end in enumerate(ends)} | {0, z.size})
+    runs = [slice(a, b) for a, b in pairwise(edges)]
+    if len(runs) == 1:
+        deepest = int(np.argmin(np.where(known, z, np.inf))) + 1
+        cut = [0, deepest, z.size] if MIN_POINTS <= deepest <= z.size - MIN_POINTS else [0, z.size]
+        return [(slice(a, b), None) for a, b in pairwise(cut) if known[a:b].any()]
+    told = directions if len(directions) == len(runs) else [None] * len(runs)
+    return [(run, way) for run, way in zip(runs, told, strict=True) if known[run].any()]
+
+
+def _role(z: Floats, travel: float, direction: int | None) -> Role:
+    """As the note says; by the movement where it says nothing."""
+    if direction is not None:
+        return _ROLES[direction]
+    rise = float(z[-1] - z[0])
+    if abs(rise) < _REST * travel:
+        return "pause"
+    return "approach" if rise < 0.0 else "retract"
