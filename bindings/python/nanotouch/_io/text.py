@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
-_ROW = re.compile(r"[-+\d.,;\seE]*\d[-+\d.,;\seE]*|(?i:[-+\d.,;\se]|nan|bad|inf(?:inity)?)+")
+_ROW = re.compile(r"[-+\d.,;\seE]+|(?i:[-+\d.,;\se]|nan|bad|inf(?:inity)?)+")
 _LOOKED_AT = 200  # rows
 _SHIFT_JIS_MICRO = "\x83\xca"  # as latin-1
 
@@ -75,11 +75,12 @@ def _is_decimal(sample: str) -> bool:
     """Whether commas are decimal ones; NotATable where they may be either."""
     if not re.search(r"\d,\d", sample):
         return False
+    others = re.search(r"[;\t]|\d[ ]+[-+\d]", sample) is not None and not re.search(r"\d,[ ]", sample)
     if re.search(r"\d\.\d", sample):
-        if re.search(r"\d\.\d{3},\d", sample) or re.search(r"\d,\d{3}\.\d", sample):
+        if others and (re.search(r"\d\.\d{3},\d", sample) or re.search(r"\d,\d{3}\.\d", sample)):
             raise NotATable("its numbers have thousands separators")
         return False
-    if re.search(r"[;\t]|\d[ ]+[-+\d]", sample) and not re.search(r"\d,[ ]", sample):
+    if others:
         return True
     if re.search(r",[-+]?0\d", sample):
         raise NotATable("commas stand both in its numbers and between them")

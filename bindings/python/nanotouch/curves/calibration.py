@@ -130,13 +130,12 @@ def _per_ampere(value: float) -> bool:
 def check_detector(sensitivity: float, detector: str, file: Path) -> None:
     """Refuse a sensitivity that is given for a detector of the other unit."""
     low, high = SENSITIVITY_PER_AMPERE if detector == "A" else SENSITIVITY_RANGE
-    if low <= sensitivity <= high:
-        return
-    example = "50nm/nA" if detector == "A" else "50nm/V"
-    raise ReadError(
-        f"{file}: sensitivity {sensitivity:g}: its detector reads {detector}, so it is in m/{detector}, "
-        f"{low:g} .. {high:g} m/{detector}, as {example}"
-    )
+    if not low <= sensitivity <= high:
+        example = "50nm/nA is 50 m/A" if detector == "A" else "50nm/V is 5e-8 m/V"
+        raise InvalidValue(
+            f"sensitivity: {sensitivity!r} m/{detector}, expected {low:g} .. {high:g} m/{detector}, as the detector of "
+            f"{file} reads {detector} ({example})"
+        )
 
 
 def _rows(file: Path, lines: list[str]) -> Iterator[tuple[str, Calibration]]:

@@ -15,6 +15,7 @@ from .curve import ForceCurve
 from .events import Branch, Rupture
 from .flicker import correlated_noise
 from .report import CurveReport
+from .thermal import check_temperature
 
 ChainModel = Literal["worm-like", "freely-jointed"]
 
@@ -98,7 +99,7 @@ def chains(
     segment_length : float, optional
         Persistence or Kuhn length [m], held; fitted if not given.
     temperature : float
-        [K].
+        [K], 77 .. 1000; room temperature is 298, not 25.
 
     Returns
     -------
@@ -111,8 +112,7 @@ def chains(
         raise InvalidValue(f"model {model!r}: valid are {', '.join(laws)}")
     if segment_length is not None and not _SHORTEST <= segment_length <= _LONGEST:
         raise InvalidValue(f"segment_length: {segment_length:g} m, valid is {_SHORTEST:g} to {_LONGEST:g} m")
-    if not 1.0 <= temperature <= 1000.0:
-        raise InvalidValue(f"temperature: {temperature:g} K, valid is 1 to 1000 K")
+    check_temperature(temperature)
     stiffness, retract = curve.spring_constant, report.branches.get("retract")
     if stiffness is None:
         raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read, or --spring-constant")

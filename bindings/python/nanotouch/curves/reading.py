@@ -17,6 +17,7 @@ from . import afm_formats, archive, asylum, asylum_pair, jpk, jpk_text, nanonis,
 from .calibration import Calibration, CalibrationTable, calibrated
 from .checks import check_curve
 from .curve import ForceCurve, Segment
+from .doubts import doubts
 
 
 def read(
@@ -73,10 +74,17 @@ def read(
     with guarded(file, name):
         if not curves:
             raise ReadError(f"{file}: holds no force curve")
-        curves = [calibrated(curve, given, file) for curve in curves]
-        for curve in curves:
-            check_curve(curve, file)
-    return curves
+        return [_believed(curve, given, file) for curve in curves]
+
+
+def _believed(curve: ForceCurve, given: Calibration, file: Path) -> ForceCurve:
+    """With what is given in place of the file's, checked, and with what speaks against it in its notes."""
+    curve = calibrated(curve, given, file)
+    check_curve(curve, file)
+    notes = doubts(curve)
+    if not notes:
+        return curve
+    return ForceCurve(curve.segments, dict(curve.meta) | {"notes": (*curve.meta.get("notes", ()), *notes)}, curve.name)
 
 
 class Stream:
@@ -92,9 +100,7 @@ class Stream:
 
     def __getitem__(self, number: int) -> ForceCurve:
         with guarded(self.file, jpk.NAME):
-            curve = calibrated(self._archive[number], self._given, self.file)
-            check_curve(curve, self.file)
-        return curve
+            return _believed(self._archive[number], self._given, self.file)
 
     def place(self, number: int) -> dict[str, Any]:
         """Where a curve was taken: what ``meta`` says of grid and position, without reading the curve."""

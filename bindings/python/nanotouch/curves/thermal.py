@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from .._arrays import check_between
 from ..errors import InvalidValue, require
 
+TEMPERATURES = (77.0, 1000.0)  # [K]
+ZERO_CELSIUS = 273.15  # [K]
 BOLTZMANN = 1.380649e-23  # J/K, exact
 #: First mode of a rectangular beam seen by an optical lever that was calibrated by pressing: 0.971/1.09^2 (Butt and
 #: Jaschke 1995; Hutter 2005).
@@ -38,6 +40,16 @@ class ThermalTune:
     sigma: dict[str, float]
 
 
+def check_temperature(kelvin: float) -> None:
+    """Refuse what is no temperature of a lever, and above all one in degrees Celsius."""
+    low, high = TEMPERATURES
+    if low <= kelvin <= high:
+        return
+    celsius = -ZERO_CELSIUS < kelvin < low
+    hint = f"; {kelvin:g} degrees Celsius are {kelvin + ZERO_CELSIUS:.5g} K" if celsius else ""
+    raise InvalidValue(f"temperature: {kelvin:g} K, valid is {low:g} to {high:g} K{hint}")
+
+
 def thermal_tune(
     frequency: ArrayLike,
     density: ArrayLike,
@@ -54,22 +66,26 @@ def thermal_tune(
     Parameters
     ----------
     frequency : array_like, shape (n,)
-        Of the first resonance and what surrounds it [Hz].
+        Of the first resonance and what surrounds it [Hz]. A value at 0 Hz before all others, the mean, is left out.
     density : array_like, shape (n,)
         One-sided power spectral density of the deflection [m^2/Hz].
     averages : int
         How many periodograms it is the mean of.
     temperature : float
-        [K].
+        [K], 77 .. 1000; room temperature is 295, not 22.
     correction : float
         0.971 for a true deflection of the end, 0.817 for an optical lever.
     """
     f, S = np.asarray(frequency, np.float64), np.asarray(density, np.float64)
+    if f.ndim == S.ndim == 1 and f.size and f[0] == 0.0:
+        f, S = f[1:], S[1:]
     if f.ndim != 1 or f.shape != S.shape or f.size < 16:
         raise InvalidValue(f"frequency, density: shapes {f.shape} and {S.shape}, expected one of at least 16 points")
-    if not (np.all(np.isfinite(f)) and np.all(f > 0.0) and np.all(np.isfinite(S)) and np.all(S > 0.0)):
-        raise InvalidValue("frequency, density: expected positive, finite values")
-    check_between("temperature", temperature, "K", above=0.0)
+    for name, values, unit in (("frequency", f, "Hz"), ("density", S, "m^2/Hz")):
+        bad = np.flatnonzero(~(np.isfinite(values) & (values > 0.0)))
+        if bad.size:
+            raise InvalidValue(f"{name}: {values[bad[0]]:g} {unit} at [{bad[0]}], expected positive, finite values")
+    check_temperature(temperature)
     check_between("averages", averages, "", above=0)
     special, optimize = require("scipy.special", "curves"), require("scipy.optimize", "curves")
     level = np.log(S) - (float(special.digamma(averages)) - np.log(averages))

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from nanotouch._arrays import Floats
 
 from .contact_part import Contact, contact_of
-from .fitting import ASSUMED_HALF_ANGLE
-from .models import Model, extension, find, layer_of
+from .fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
+from .models import Model, extension, find, is_sharp, layer_of
 from .result import Status
 from .solving import Setup, solve
 from .uncertainties import Uncertainties
@@ -63,7 +63,7 @@ def fit_points(
     force: ArrayLike,
     model: str | Model = "hertz",
     *,
-    radius: float = 20e-9,
+    radius: float | None = None,
     half_angle: float | None = None,
     spring_constant: float = 0.0,
     contact_point: float | None = None,
@@ -87,8 +87,8 @@ def fit_points(
         + repulsive [N].
     model : str or Model
         As of :func:`nanotouch.fit.fit_curve`.
-    radius, half_angle : float
-        Of the tip [m], [rad].
+    radius, half_angle : float, optional
+        Of the tip [m], [rad]. Without them 20 nm and 20 degrees are assumed, and `message` says so.
     spring_constant : float
         k_c [N/m]; 0: `position` is the indentation.
     contact_point : float, optional
@@ -109,7 +109,7 @@ def fit_points(
     fit_offset, fit_tilt = fit_offset and "force_offset" not in held, fit_tilt and "force_tilt" not in held
     setup = Setup(
         model=chosen,
-        radius=radius,
+        radius=ASSUMED_RADIUS if radius is None else radius,
         half_angle=ASSUMED_HALF_ANGLE if half_angle is None else half_angle,
         spring_constant=spring_constant,
         held=held,
@@ -126,7 +126,16 @@ def fit_points(
             options.free(name)
         found = compiled.run(options, X, F)
     found["residuals_are_noise"] &= X.ndim != 1 or not _ways_differ(X, F)
+    found["message"] += _assumed(chosen, radius, half_angle)
     return _result(found, options, contact is not None and contact.torn)
+
+
+def _assumed(model: Model, radius: float | None, half_angle: float | None) -> str:
+    """What was not given and counts in this law, in words."""
+    if is_sharp(model.name):
+        degrees = np.degrees(ASSUMED_HALF_ANGLE)
+        return "" if half_angle is not None else f"; half angle {degrees:.3g} degrees assumed: {model.scaling}"
+    return "" if radius is not None else f"; tip radius {ASSUMED_RADIUS * 1e9:g} nm assumed: {model.scaling}"
 
 
 def _ways_differ(position: Floats, force: Floats) -> bool:

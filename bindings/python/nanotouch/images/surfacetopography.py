@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from .._io.files import guarded
 from ..errors import ReadError, require
-from . import gwyddion, headers
+from . import gwyddion, headers, text_table
 from .channel import HEIGHT_NAMES, OTHER_NAMES, Channel, Plane, chosen, with_default
 from .checks import LENGTHS, check_shape
 
@@ -85,10 +85,10 @@ def read(file: Path, channel: str | None) -> Plane:
 
 @contextmanager
 def _opened(file: Path) -> Iterator[Any]:
-    with guarded(file, NAME):
+    with guarded(file, NAME), text_table.plain_form(file) as plain:
         io: ModuleType = require("SurfaceTopography.IO", "images")
         try:
-            reader = io.open_topography(str(file))
+            reader = io.open_topography(str(plain))
         except io.CannotDetectFileFormat:
             reader = None
         if reader is None or reader.format() in _CREDULOUS:
