@@ -82,7 +82,9 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
     )  # fmt: skip
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
     parser.add_argument(
-        "--sensitivity", metavar="SENSITIVITY", help="deflection sensitivity in place of the file's, as 40nm/V, or of NT-MDT's text as 40nm/nA"
+        "--sensitivity",
+        metavar="SENSITIVITY",
+        help="deflection sensitivity in place of the file's, as 40nm/V, or of NT-MDT's text as 40nm/nA",
     )
     parser.add_argument(
         "--calibration", metavar="FILE", help="CSV table of both for many files: file,spring_constant,sensitivity"

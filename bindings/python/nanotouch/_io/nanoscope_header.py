@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..errors import ReadError
@@ -82,9 +83,14 @@ def sections(file: Path) -> list[Section]:
         text = stream.read(_HEADER_LIMIT).split(b"\x1a")[0].decode("latin-1")
     if "\\*File list end" not in text:
         raise ReadError(f"{file}: its header does not end")
+    return parsed(file, text.split("\\*File list end")[0].splitlines())
+
+
+def parsed(file: Path, lines: Iterable[str]) -> list[Section]:
+    """The sections in the lines of a header."""
     found: list[Section] = []
-    for line in text.split("\\*File list end")[0].splitlines():
-        if line.startswith("\\*"):
+    for line in lines:
+        if line.startswith(("\\*", "\\?")):
             found.append(Section(file, line[2:].strip()))
         elif line.startswith("\\") and found:
             # A colon also stands in the name of a parameter: "@4:Z scale: V ..."

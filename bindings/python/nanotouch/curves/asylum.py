@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Asylum force curves in one Igor binary wave: columns ``Raw``, ``Defl``, ``ZSnsr`` [m], and a note.
 
-The travel of the base grows towards the sample, so z is its negative. The note says with ``Indexes`` where the movements
-end and with ``Direction`` what they are: 1 towards the sample, 0 a dwell, -1 away. Where it does not, the curve is cut at
-its deepest point. Nothing in the note is needed to read the curve but what turns deflections into forces.
+The travel of the base grows towards the sample, so z is its negative. The note says with ``Indexes`` where the
+movements end and with ``Direction`` what they are: 1 towards the sample, 0 a dwell, -1 away. Where it does not, the
+curve is cut at its deepest point. Nothing in the note is needed to read the curve but what turns deflections into
+forces.
 """
 
 from __future__ import annotations
@@ -129,11 +130,9 @@ def segments_of(
     return tuple(segments), tuple(notes)
 
 
-def _parts(
-    note: str, z: Floats, known: NDArray[np.bool_], notes: list[str]
-) -> list[tuple[slice, int | None]]:
-    """Runs of points between the indexes of the note, and their direction; without any, up to the deepest point and from
-    there on."""
+def _parts(note: str, z: Floats, known: NDArray[np.bool_], notes: list[str]) -> list[tuple[slice, int | None]]:
+    """Runs of points between the indexes of the note, and their direction; without any, up to the deepest point and
+    from there on."""
     ends = [int(word) for word in re.findall(r"\d+", text_of(note, "Indexes"))]
     words = [word.strip() for word in text_of(note, "Direction").split(",") if word.strip()][1:]
     directions = [int(float(word)) if re.fullmatch(r"[-+]?[01](\.0*)?", word) else None for word in words]

@@ -5,8 +5,8 @@ The detector's volts u are what is measured: deflection = s u, force = k_c s u. 
 k_c the force alone, and with them what a file states as a force (the setpoint). z is the height of the base, which the
 stage moves: neither changes it. The tip, at z + deflection, moves with s.
 
-NT-MDT's detectors read amperes, so their s is in m/A. The ranges of both units have nothing in common, so that one given
-for the wrong detector is refused.
+NT-MDT's detectors read amperes, so their s is in m/A. The ranges of both units have nothing in common, so that one
+given for the wrong detector is refused.
 """
 
 from __future__ import annotations

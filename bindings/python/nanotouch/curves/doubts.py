@@ -49,8 +49,9 @@ def _saturated(branches: list[Segment]) -> str:
             inside = _is_bracketed(sign * values, first, last)
             if moved >= _TRAVEL * float(np.ptp(segment.z)) and (inside or (sign > 0.0 and _is_deep(segment, first))):
                 return (
-                    f"saturated: the {word} {last - first + 1} readings of the {segment.role} are equal while the base "
-                    f"moves by {moved * 1e9:.3g} nm; the detector is at the end of its range, and forces there are wrong"
+                    f"saturated: the {word} {last - first + 1} readings of the {segment.role} are equal while the "
+                    f"base moves by {moved * 1e9:.3g} nm; the detector is at the end of its range, and forces there "
+                    "are wrong"
                 )
     return ""
 
@@ -118,6 +119,6 @@ def _untriggered(curve: ForceCurve) -> str:
     if reached >= _REACHED * setpoint:
         return ""
     return (
-        f"no trigger: the approach ends at {reached * 1e9:.3g} nN of the {setpoint * 1e9:.3g} nN at which it was to turn; "
-        "it may not have touched"
+        f"no trigger: the approach ends at {reached * 1e9:.3g} nN of the {setpoint * 1e9:.3g} nN at which it was to "
+        "turn; it may not have touched"
     )

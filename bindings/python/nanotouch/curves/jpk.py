@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """JPK force curves and maps: ``.jpk-force``, ``.jpk-force-map``, ``.jpk-qi-data``, ``.jpk-qi-series``.
 
-A zip archive of Java property files and big-endian numbers: integers, or floats where JPK's data processing saved it. A single curve has its segments in ``segments/``, a map
-in ``index/N/segments/``. A segment's ``segment-header.properties`` says style and duration, and for each channel how
-its integers become volts (*encoder*) and these what is meant, slot by slot (*conversion set*: volts, distance, force).
-What many segments share stands once in ``shared-data/header.properties``: ``channel.height.lcd-info.*=0`` stands for
-everything under ``lcd-info.0.``. Segments of other styles than extend, pause and retract (modulation, ...) are left
-out, and named in ``meta["notes"]``.
+A zip archive of Java property files and big-endian numbers: integers, or floats where JPK's data processing saved it.
+A single curve has its segments in ``segments/``, a map in ``index/N/segments/``. A segment's
+``segment-header.properties`` says style and duration, and for each channel how its integers become volts (*encoder*)
+and these what is meant, slot by slot (*conversion set*: volts, distance, force). What many segments share stands once
+in ``shared-data/header.properties``: ``channel.height.lcd-info.*=0`` stands for all under ``lcd-info.0.``. Segments of
+other styles than extend, pause and retract (modulation, ...) are left out, and named in ``meta["notes"]``.
 
 afmformats reads these files too, and this reader is tested against it. But afmformats searches all names of the archive
 again for every curve, so its time grows as the square of a map's. It does not keep a segment's style either.

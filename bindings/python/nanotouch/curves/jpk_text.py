@@ -2,7 +2,8 @@
 """JPK force curves exported as text by its data processing.
 
 Blocks of ``# key: value`` lines, one for each segment, each before its rows. ``columns``, ``units`` and
-``calibrationSlots`` name what stands in a row, ``springConstant`` and ``sensitivity`` how the deflection was calibrated.
+``calibrationSlots`` name what stands in a row, ``springConstant`` and ``sensitivity`` how the deflection was
+calibrated.
 """
 
 from __future__ import annotations
@@ -94,7 +95,9 @@ def _curve(file: Path, number: int, blocks: list[_Block], given: Calibration) ->
         segment, start = _segment(file, place, block, meta, given, start)
         segments.append(segment)
     if not segments:
-        raise ReadError(f"{file}: curve {number} has no segments of style {', '.join(ROLES)}, only {', '.join(left_out)}")
+        raise ReadError(
+            f"{file}: curve {number} has no segments of style {', '.join(ROLES)}, only {', '.join(left_out)}"
+        )
     if left_out:
         meta["notes"] = tuple(f"{counted(n, 'segment')} of style {s!r} left out" for s, n in left_out.items())
     setpoint = _number(blocks[0], "force-settings.relative-setpoint", "setpoint")
@@ -154,9 +157,7 @@ class _Columns:
         return self.values[:, self.names.index(name)] * factor
 
 
-def _calibrated(
-    columns: _Columns, block: _Block, meta: dict[str, Any], given: Calibration
-) -> tuple[Floats, Floats]:
+def _calibrated(columns: _Columns, block: _Block, meta: dict[str, Any], given: Calibration) -> tuple[Floats, Floats]:
     """Force and deflection, whichever of force, deflection and volts stands in the rows."""
     unit = columns.unit("vDeflection")[-1:]
     needed = {"N": ("spring constant",), "m": ("spring constant",), "V": ("spring constant", "sensitivity")}.get(unit)

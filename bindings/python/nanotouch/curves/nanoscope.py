@@ -3,9 +3,9 @@
 
 The data of a force image are int16, from version 9.2 on int32: for each curve the approach and then the retraction,
 both from the deepest point outwards. ``Samps/line`` counts the retraction first. Where the branches differ in length,
-both are stored as long as the longer one, and what follows in the shorter one is no data. Samples of a ramp stand its size over
-the points of the retraction apart; where no ramp is stated, the height sensor's channel is z. Samples that were never
-taken, at the end of a branch, are 0 or the lowest integer: no data, and left out.
+both are stored as long as the longer one, and what follows in the shorter one is no data. Samples of a ramp stand its
+size over the points of the retraction apart; where no ramp is stated, the height sensor's channel is z. Samples that
+were never taken, at the end of a branch, are 0 or the lowest integer: no data, and left out.
 """
 
 from __future__ import annotations

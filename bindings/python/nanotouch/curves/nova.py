@@ -42,7 +42,8 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     missing = [key for key, value in calibration.given.items() if value is None]
     if missing:
         raise ReadError(f"{file}: states no {' and no '.join(missing)}; give it (the sensitivity in m/A, as 50nm/nA)")
-    assert calibration.sensitivity is not None and calibration.spring_constant is not None
+    assert calibration.sensitivity is not None
+    assert calibration.spring_constant is not None
     check_detector(calibration.sensitivity, "A", file)
     try:
         values = text.table(text.plain(text.decoded(file.read_bytes())).splitlines())

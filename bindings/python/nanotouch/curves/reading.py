@@ -13,7 +13,7 @@ from .._io.readers import head_of, registered_for
 from .._io.words import printable
 from ..errors import ReadError
 from ..formats import refusal
-from . import afm_formats, archive, asylum, asylum_pair, jpk, jpk_text, nanonis, nanoscope, nova
+from . import afm_formats, archive, asylum, asylum_pair, jpk, jpk_text, nanonis, nanoscope, nanoscope_text, nova
 from .calibration import Calibration, CalibrationTable, calibrated
 from .checks import check_curve
 from .curve import ForceCurve, Segment
@@ -153,7 +153,7 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
     if file.suffix.lower() in jpk.ENDINGS:
         with guarded(file, jpk.NAME):
             return jpk.NAME, jpk.read(file, given)
-    for own in (nanonis, jpk_text, nova):
+    for own in (nanonis, jpk_text, nanoscope_text, nova):
         if own.recognises(file, head):
             with guarded(file, own.NAME):
                 return own.NAME, own.read(file, given)

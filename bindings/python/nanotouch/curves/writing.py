@@ -92,7 +92,7 @@ def _columns(curve: ForceCurve) -> Columns:
 
 def _numbers(curve: ForceCurve) -> list[int]:
     """Of the segments: the approach 0, the retraction 1, all others from 2 on."""
-    main = {id(part): number for number, role in enumerate(("approach", "retract")) for part in curve.parts(role)}
+    main = dict.fromkeys(map(id, curve.parts("approach")), 0) | dict.fromkeys(map(id, curve.parts("retract")), 1)
     numbers, others = [], 2
     for segment in curve.segments:
         numbers.append(main.get(id(segment), others))

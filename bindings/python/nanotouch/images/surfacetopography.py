@@ -22,7 +22,7 @@ from .._io.files import guarded
 from ..errors import ReadError, require
 from . import gwyddion, headers, text_table
 from .channel import HEIGHT_NAMES, OTHER_NAMES, Channel, Plane, chosen, with_default
-from .checks import LENGTHS, check_shape
+from .checks import LENGTHS, PIXELS_PER_SIDE, check_shape
 
 NAME = "SurfaceTopography"
 #: Readers that recognise nothing in a file and take any bytes of a fitting number for an image (elevation maps, NMS).
@@ -100,6 +100,9 @@ def _opened(file: Path) -> Iterator[Any]:
 def _images_in(reader: Any, file: Path) -> tuple[list[Any], list[Channel]]:
     """Those that SurfaceTopography lists, and those that it leaves out."""
     found = [info for info in reader.channels if info.dim == 2]
+    if reader.format() == "asc" and found and all(min(info.nb_grid_pts) < PIXELS_PER_SIDE[0] for info in found):
+        columns, rows = found[0].nb_grid_pts
+        raise ReadError(f"{file}: a table of {rows} rows and {columns} columns, not an image")
     left_out = gwyddion.channels(file) if reader.format() == "gwy" else []
     if not found and not left_out:
         why = _NO_HEIGHTS_IN_TIFF if reader.format() == "jpk" else "holds no image (no two-dimensional channel)"

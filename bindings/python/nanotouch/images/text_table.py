@@ -17,6 +17,9 @@ from .._io import text
 from .._io.readers import head_of
 from ..errors import ReadError
 
+_CURVES = re.compile(
+    r'\A(?:"\\[?*]?(?:Force file|File) list"|Force-Distance Curve|# TEXT EXPORT)|^# (?:approachID|segmentIndex)', re.M
+)
 _NUMBERS = 4  # in a row of a picture, or of points: at least 2
 _MISSING = {"nan", "bad", "inf", "infinity", "-inf", "+inf"}
 
@@ -36,8 +39,11 @@ def plain_form(file: Path) -> Iterator[Path]:
 
 
 def _table(file: Path) -> str | None:
-    if not text.is_text(head_of(file)):
+    head = head_of(file)
+    if not text.is_text(head):
         return None
+    if _CURVES.search(text.decoded(head)):
+        raise ReadError(f"{file}: force curves as text, not an image: curves.read reads them")
     raw = file.read_bytes()
     if not text.is_text(raw):
         return None
