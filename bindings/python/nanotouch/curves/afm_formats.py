@@ -19,8 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._io.readers import head_of
 from .._io.words import printable
 from ..errors import ReadError, require
+from . import hdf5
 from .calibration import Calibration
 from .checks import FEWEST, MAX_POINTS, MIN_POINTS
 from .curve import ForceCurve, Role, Segment
@@ -34,6 +36,9 @@ _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a volta
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """All curves with the file's own calibration; `calibration` only where the file states none."""
+    if hdf5.recognises(file, head_of(file)):
+        with hdf5.opened(file) as found:
+            return [_converted(data, file, number) for number, data in enumerate(found)]
     known = sorted(require("afmformats", "curves").formats.supported_extensions)
     ending = _SPELLINGS.get(file.suffix.lower(), file.suffix.lower())
     if ending not in known:
@@ -69,13 +74,6 @@ def _loaded(file: Path, link: Path, calibration: Calibration) -> list[Any]:
         if missing:
             raise ReadError(f"{file}: states no {' and no '.join(missing)}; give it") from None
         return list(afmformats.load_data(link, meta_override={key: given[key] for key in error.meta_keys}))
-    except KeyError as error:
-        if link.suffix != ".ibw":
-            raise
-        raise ReadError(
-            f"{file}: its note lacks {error}, which a force curve of Asylum Research states; of a pair of files, "
-            "...Defl.ibw and ...ZSnsr.ibw, both must lie in one folder under their own names"
-        ) from None
 
 
 def _other(file: Path) -> str:
@@ -83,7 +81,7 @@ def _other(file: Path) -> str:
 
 
 def _converted(data: Any, file: Path, number: int) -> ForceCurve:
-    meta = dict(data.metadata.items()) | {"enum": number}  # counted from 0, of Asylum's too
+    meta = dict(data.metadata.items()) | {"enum": number}  # counted from 0
     if str(meta.get("format", "")).startswith("Optics11"):
         meta = _in_si(meta) | _tip(file)
     z_channel = next((c for c in _Z_CHANNELS if c in data.columns), None)

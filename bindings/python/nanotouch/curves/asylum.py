@@ -13,7 +13,7 @@ import re
 from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,14 +38,16 @@ _REST = 0.1  # of the travel; a movement over less is a pause
 _ROLES: Mapping[int, Role] = {1: "approach", 0: "pause", -1: "retract"}
 
 
-def read(file: Path, calibration: Calibration) -> list[ForceCurve] | None:
-    """The one curve; None for a wave that is no table of deflections and heights."""
+def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
+    """The one curve; ReadError for a wave that is no table of deflections and heights."""
     wave, note = wave_of(file)
     columns = _labels(wave, file)
     deflection_name = next((name for name in _DEFLECTIONS if name in columns), None)
     height = next((one for one in HEIGHTS if one[0] in columns), None)
     if deflection_name is None or height is None:
-        return None
+        _refuse(file, note, columns)
+    assert deflection_name is not None
+    assert height is not None
     values = np.asarray(wave["wData"], np.float64)
     if not MIN_POINTS <= len(values) <= MAX_POINTS:
         raise ReadError(f"{file}: a wave of {len(values)} points, expected at least {MIN_POINTS}")
@@ -59,6 +61,16 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve] | None:
     if notes:
         meta["notes"] = notes
     return [ForceCurve(segments, meta, printable(file.name))]
+
+
+def _refuse(file: Path, note: str, columns: list[str]) -> NoReturn:
+    """A picture, one half of a pair alone, or a table of something else."""
+    if not text_of(note, "ImagingMode"):
+        raise ReadError(
+            f"{file}: its note lacks 'ImagingMode', which a force curve of Asylum Research states; of a pair of files, "
+            "...Defl.ibw and ...ZSnsr.ibw, both must lie in one folder under their own names"
+        )
+    raise ReadError(f"{file}: lacks a height or a deflection; it has {', '.join(columns) or 'no columns'}")
 
 
 def wave_of(file: Path) -> tuple[Any, str]:

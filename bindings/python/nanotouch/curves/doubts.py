@@ -16,6 +16,7 @@ _STEPS = 50  # of the digitiser in the range; fewer make any reading stand still
 _BESIDE = 0.05  # of the range, by which what lies about a dip's floor is higher
 _ENDS = 0.05  # of a branch, at its deepest point
 _INVERTED = 0.8  # of the range
+_STEADY = 0.9  # correlation with the place
 _REACHED = 0.5  # of the setpoint
 
 
@@ -38,11 +39,9 @@ def _saturated(branches: list[Segment]) -> str:
     """Readings that stand still at their greatest or least while the base moves."""
     for segment in branches:
         values = _readings(segment)
-        if not np.isfinite(values).all() or _is_coarse(values):
-            continue
         for sign, word in ((1.0, "largest"), (-1.0, "smallest")):
             run = _standing(sign * values)
-            if run is None:
+            if run is None or _is_coarse(values):
                 continue
             first, last = run
             moved = abs(float(segment.z[last] - segment.z[first]))
@@ -95,18 +94,23 @@ def _inverted(branches: list[Segment]) -> str:
         return ""
     told = []
     for segment in branches:
-        order = np.argsort(segment.z, kind="stable")
-        values = _readings(segment)[order]
+        readings = _readings(segment)
+        if readings[int(segment.z.argmin())] > 0.5 * float(readings.max() + readings.min()):
+            return ""
+        values = readings[np.argsort(segment.z, kind="stable")]
         far = float(np.median(values[values.size // 2 :]))
         spread = float(np.ptp(values))
         count = max(int(_ENDS * values.size), _STANDING)
         deep = values[:count]
-        falls = float(np.corrcoef(np.arange(count), deep)[0, 1]) if float(np.ptp(deep)) > 0.0 else 0.0
         inside = far - float(deep.min()) > _INVERTED * spread and float(values.max()) - far < (1 - _INVERTED) * spread
-        told.append(spread > 0.0 and inside and falls > 0.9 and float(np.ptp(deep)) > 0.02 * spread)
+        told.append(inside and float(np.ptp(deep)) > 0.02 * spread > 0.0 and _grows(deep))
     if not all(told):
         return ""
     return "the readings fall as the base goes in, to the end of both ways: the sign of the deflection looks inverted"
+
+
+def _grows(values: Floats) -> bool:
+    return float(np.corrcoef(np.arange(values.size), values)[0, 1]) > _STEADY
 
 
 def _untriggered(curve: ForceCurve) -> str:

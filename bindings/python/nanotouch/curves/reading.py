@@ -165,9 +165,7 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
             return archive.NAME, archive.read(file, lambda one: _loaded(checked_path(one), given)[1])
     if file.suffix.lower() == ".ibw":
         with guarded(file, asylum.NAME):
-            table = asylum.read(file, given)
-        if table is not None:
-            return asylum.NAME, table
+            return asylum.NAME, asylum.read(file, given)
     refused = refusal(file, head, "curves")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")
