@@ -18,7 +18,7 @@ from made import Array, Curve, Curves, Lever, Made, Part, Random, chosen, lever,
 FORMAT = "Asylum curves (.ibw)"
 GRID = {
     "kind": ["wave", "pair"],
-    "segments": ["a r", "a h r", "a p r", "a r longer", "a p a r", "a r p"],
+    "segments": ["a r", "a h r", "a p r", "a r longer", "a p a r", "a r p", "p a r", "p a h r"],
     "columns": ["Raw Defl ZSnsr", "Defl ZSnsr", "Raw Defl", "ZSnsr Defl Raw", "Raw Defl ZSnsr Amp"],
     "indexes": ["stated", "missing"],
     "tail": ["", "NaN"],
@@ -62,7 +62,9 @@ def _consistent(c: dict[str, Any]) -> dict[str, Any]:
     if c["kind"] == "pair":
         c["tail"] = ""
     if c["indexes"] == "missing" or c["kind"] == "pair":
-        c["segments"] = {"a p a r": "a r", "a h r": "a p r", "a r p": "a r"}.get(c["segments"], c["segments"])
+        c["segments"] = {"a p a r": "a r", "a h r": "a p r", "a r p": "a r", "p a r": "a r", "p a h r": "a r"}.get(
+            c["segments"], c["segments"]
+        )
     if c["indexes"] == "missing":
         c["segments"] = "a r longer" if c["segments"] == "a r longer" else "a r"
     return c

@@ -22,6 +22,8 @@ GRID = {
         "DeflectionRetrace HeightRetrace",
         "UserIn0Trace ZSensorRetrace HeightTrace",
         "HeightTrace HeightTraceMod0",
+        "Height",
+        "MapHeight MapAdhesion",
     ],
     "encoding": ["latin-1", "utf-8", "shift-jis"],
     "stopped": ["", "", "NaN"],
@@ -48,7 +50,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
             heights[done:] = heights[done:] if c["down"] else np.nan
         stored = heights.astype(c["stored"])
         layers.append(stored.T)
-        if name.startswith(("Height", "ZSensor")):
+        if name.startswith(("Height", "ZSensor", "MapHeight")):
             planes[name] = Plane(name, stored.astype(float), (dy, dx), "Retrace" not in name)
     text = note(_note(c, (ny, nx), (dy, dx)), c["encoding"]).replace(b"##", "\xb5".encode(c["encoding"], "replace"))
     data = np.stack(layers, axis=2)

@@ -2,13 +2,14 @@
 """Files with known answers: writes them from random variants of every format, reads them as users do, and counts what
 is right, refused and silently wrong: ``make corpus``.
 
-    python tests/corpus/generated.py --count 2000 --first 1 [--formats JPK nid] [--keep FOLDER]
+    python tests/corpus/generated.py --count 2000 --first 1 [--formats JPK nid] [--keep FOLDER] [--write PAGE]
 """
 
 from __future__ import annotations
 
 import argparse
 import importlib
+import re
 import sys
 import tempfile
 from collections import Counter
@@ -39,6 +40,12 @@ MODULES = (
     "gwyddion_image",
     "hdf5_image",
 )
+
+
+MARK, END = (
+    "<!-- made by tests/corpus/generated.py -->\n",
+    "<!-- end of it -->\n",
+)  # the tables lie between, in the docs
 
 
 def writers() -> dict[str, Writer]:
@@ -90,12 +97,39 @@ def _class(row: Row) -> str:
     return row.verdict.kind
 
 
+def page(found: Sequence[Row], asked: str) -> str:
+    """What is read, with which fields, and what is refused and how: for the documentation."""
+    lines = [f"`{asked}`:", "", table(found), "", "| format | fields that vary |", "|---|---|"]
+    for name in MODULES:
+        module = importlib.import_module(name)
+        fields = "; ".join(f"{key}: {_values(row)}" for key, row in module.GRID.items())
+        lines.append(f"| {module.FORMAT} | {fields} |")
+    lines += ["", "| format | refused | files | how |", "|---|---|---|---|"]
+    reasons = Counter((row.made.format, _class(row), _pattern(row)) for row in found if row.verdict.kind == "refused")
+    for (name, kind, reason), number in sorted(reasons.items()):
+        lines.append(f"| {name} | {'rightly' if kind == 'rightly' else 'though readable'} | {number} | {reason} |")
+    if not reasons:
+        lines.append("| | none | 0 | |")
+    return "\n".join([*lines, ""])
+
+
+def _values(row: Sequence[object]) -> str:
+    known = dict.fromkeys("yes" if v is True else "no" if v is False else "none" if v in ("", None) else v for v in row)
+    return ", ".join(f"`{value.strip() or repr(value)}`" if isinstance(value, str) else str(value) for value in known)
+
+
+def _pattern(row: Row) -> str:
+    """The reason without its numbers."""
+    return re.sub(r"\d[\d.e+-]*", "#", row.verdict.reason).replace("|", "/")[:160]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--first", type=int, default=1, help="first seed")
     parser.add_argument("--formats", nargs="*", default=[], help="part of the name of a format")
     parser.add_argument("--keep", type=Path, help="folder in which the files stay")
+    parser.add_argument("--write", type=Path, help="page of the documentation that takes the tables, after its mark")
     parser.add_argument("--all", action="store_true", help="print every verdict")
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
@@ -111,6 +145,11 @@ def main() -> int:
     readable = [row for row in found if not row.made.must_refuse]
     wrong = sum(_class(row) == "wrong" for row in found)
     refused = sum(_class(row) == "refused" for row in readable)
+    if asked.write:
+        before, _, rest = asked.write.read_text(encoding="utf-8").partition(MARK)
+        command = f"python tests/corpus/generated.py --count {asked.count} --first {asked.first}"
+        after = rest.partition(END)[2]
+        asked.write.write_text(before + MARK + page(found, command) + END + after, encoding="utf-8")
     print(f"{wrong} of {len(found)} silently wrong; {refused} of {len(readable)} readable ones refused")
     return int(wrong > 0 or refused > 0.02 * len(readable))
 

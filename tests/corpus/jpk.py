@@ -29,6 +29,9 @@ GRID = {
     "back and forth": [False, True],
     "aborted": [False, True],
     "packed": ["deflated", "stored"],
+    "lost curve": [False, True],
+    "time beside": [False, True],
+    "default": ["as chained", "volts"],
     "offset": [0.0, 1.0],
 }
 NAMES = {"a": "approach", "r": "retract", "h": "hold", "p": "pause", "m": "modulation"}
@@ -95,7 +98,10 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     setpoint = float(f"{random.uniform(0.3, 2):.6g}")  # V
     archive: dict[str, Any] = {"header.properties": _header(c, grid, count)}
     curves, travel = [], float(random.uniform(0.5e-6, 4e-6))
+    lost = int(random.integers(1, count)) if c["lost curve"] and count > 2 else -1
     for index in range(count):
+        if index == lost:
+            continue
         path = f"index/{index}/" if many else ""
         if many:
             archive[f"{path}header.properties"] = _series(
@@ -123,7 +129,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
 
 def _consistent(c: Properties) -> Properties:
     single = c["kind"] in ("curve", "QI series")
-    fixed: Properties = {"aborted": c["aborted"] and not single, "back and forth": c["back and forth"] and not single}
+    fixed: Properties = {key: c[key] and not single for key in ("aborted", "back and forth", "lost curve")}
     if c["kind"].startswith("QI"):
         fixed |= {"version": "2.0", "segments": "a r", "back and forth": False}
     if c["version"] == "0.12" and c["kind"] in ("curve", "map") and c["deflection"] == "unsignedinteger":
@@ -179,7 +185,7 @@ def _channels(random: Random, c: Properties, held: Lever) -> list[Channel]:
             "V",
             "volts",
             chain,
-            chain[-1].name if chain else "volts",
+            chain[-1].name if chain and c["default"] == "as chained" else "volts",
         )
     ]
     wide = "signedshort" if c["version"] == "0.12" else "signedinteger"
@@ -303,7 +309,18 @@ def _segment(
     else:
         head |= _settings(role, number, points, duration, setpoint)
     found = {f"force-segment-header.{key}": value for key, value in head.items()}
-    found["channels.list"] = " ".join(channel.name for channel in channels)
+    listed = [channel.name for channel in channels] + (["time"] if c["time beside"] else [])
+    found["channels.list"] = " ".join(listed)
+    if c["time beside"]:
+        found |= {
+            "channel.time.data.num-points": points,
+            "channel.time.data.start": 2.5e-4,
+            "channel.time.data.step": 5e-4,
+        }
+        if c["version"] == "2.0":
+            found["channel.time.lcd-info.*"] = len(channels)
+        else:
+            found |= {"channel.time.data.type": "raster-data", "channel.time.channel.name": "time"}
     for index, channel in enumerate(channels):
         name = f"channel.{channel.name}"
         if c["version"] == "2.0":
@@ -363,7 +380,11 @@ def _shared(
     segments: Sequence[tuple[str, Array, Array, float]],
     setpoint: float,
 ) -> Properties:
-    found: Properties = {"lcd-infos.count": len(channels), "force-segment-header-infos.count": len(points)}
+    more = int(c["time beside"])
+    found: Properties = {"lcd-infos.count": len(channels) + more, "force-segment-header-infos.count": len(points)}
+    if more:
+        found |= {f"lcd-info.{len(channels)}.type": "raster-data", f"lcd-info.{len(channels)}.channel.name": "time"}
+        found |= {f"lcd-info.{len(channels)}.unit.unit": "s"}
     for index, channel in enumerate(channels):
         name = f"lcd-info.{index}"
         found |= {

@@ -15,7 +15,9 @@ from made import Array, Image, Made, Plane, Random, chosen, relief, shape, surfa
 
 FORMAT = "Nanonis image (.sxm)"
 GRID = {
-    "direction": ["both", "both", "forward"],
+    "direction": ["both", "both", "forward", "backward"],
+    "name": ["Z", "[P1]_Z"],
+    "order of bytes": ["MSBFIRST", "LSBFIRST"],
     "scan": ["up", "down"],
     "stopped": [False, False, True],
     "order": ["Z first", "Z last"],
@@ -39,14 +41,21 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     channels = ["Z", "Current", "Phase"] if c["order"] == "Z first" else ["Current", "Phase", "Z"]
     for number, name in enumerate(channels):
         info.append(
-            [str(number), name, {"Z": "m", "Current": "A"}.get(name, "deg"), c["direction"], "1.000E+0", "0.000E+0"]
+            [
+                str(number),
+                c["name"] if name == "Z" else name,
+                {"Z": "m", "Current": "A"}.get(name, "deg"),
+                c["direction"],
+                "1.000E+0",
+                "0.000E+0",
+            ]
         )
-        for forward in (True, False) if c["direction"] == "both" else (True,):
+        for forward in {"both": (True, False), "forward": (True,), "backward": (False,)}[c["direction"]]:
             heights = surface(random, (ny, nx), relief(random, size[1]))
             lower = c["scan"] == "up"
             heights[done:] = np.nan if lower else heights[done:]
             heights[: ny - done] = heights[: ny - done] if lower else np.nan
-            stored = heights.astype(">f4")
+            stored = heights.astype(">f4" if c["order of bytes"] == "MSBFIRST" else "<f4")
             data += _scanned(stored, lower, forward).tobytes()
             if name == "Z":
                 planes.append(Plane("Z", stored.astype(float), step, forward))
@@ -66,7 +75,7 @@ def _header(c: dict[str, Any], shape: tuple[int, int], size: tuple[float, float]
     gap = c["spaces"]
     tags = {
         "NANONIS_VERSION": ["2"],
-        "SCANIT_TYPE": ["              FLOAT            MSBFIRST"],
+        "SCANIT_TYPE": ["              FLOAT            " + c["order of bytes"]],
         "REC_DATE": [" 16.12.2015"],
         "REC_TIME": ["11:39:44"],
         "REC_TEMP": ["      290.0000000000"],

@@ -22,7 +22,10 @@ GRID = {
     "wide": [False, True],  # from 9.2: 32-bit data under a header of 2 bytes, or of 4
     "aspect": ["1:1", "2:1", "4:1", "0.7", "1:1 lines"],
     "size unit": ["~m", "nm", "um", "\xb5m"],
-    "size numbers": [2, 1],
+    "size numbers": ["width twice", "width", "width and height"],
+    "slow axis": [False, True],
+    "cropped": [False, True],
+    "rotated": [0, 90],
     "stopped": ["", "", "zeros", "short", "more held"],
     "order": ["trace", "retrace, trace", "trace, retrace", "retrace"],
     "kinds": ["Height", "Height Sensor", "both"],
@@ -46,6 +49,8 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     width = float(f"{10 ** random.uniform(-0.3, 1.3):.3g}")  # um
     side = width * 1e-6
     height = side if c["aspect"] in ("1:1", "1:1 lines") else side * ny / nx
+    c["high"] = f"{height / UNITS[c['size unit']]:.7g}"
+    c["height"] = f"{height * 1e9:.7g}"
     pixel = (height / ny, side / nx)
     ranges = float(10 ** random.uniform(-8.5, -6.5))
     channels: list[dict[str, Any]] = []
@@ -78,6 +83,10 @@ def _consistent(c: dict[str, Any]) -> dict[str, Any]:
     wide = {"bytes": 4 if new else 2, "said": 4 if new and c["wide"] else 2}
     if c["aspect"] != "1:1" and c["stopped"] == "more held":
         c["stopped"] = ""
+    if c["cropped"]:
+        c |= {"stopped": "", "slow axis": False}
+        if c["aspect"] == "1:1 lines":
+            c["aspect"] = "1:1"
     return c | wide
 
 
@@ -133,8 +142,12 @@ def _file(
     lines = ["*File list", f"Version: {c['version']}", "Date: 01:33:51 PM Mon Dec 15 2014", "Start context: OL2BIG"]
     lines += [f"Data length: {OFFSET}", "Text: ", "*Equipment list", "Description: Dimension Icon", "*Scanner list"]
     lines += ["Scanner type: AFM", "Piezo size: J", *scanner, "*Ciao scan list", "Operating mode: Image"]
-    lines += [f"Scan Size: {width * 1e3:.6g} nm", "X Offset: 0 nm", f"Samps/line: {nx}"]
-    lines += [f"Lines: {ny // 4 if c['stopped'] == 'more held' else ny}", f"Aspect Ratio: {c['aspect'].split()[0]}"]
+    full = 2 if c["cropped"] else 1  # the scan of which this is a part
+    lines += [f"Scan Size: {full * width * 1e3:.6g} nm", "X Offset: 0 nm", f"Samps/line: {full * nx}"]
+    lines += [f"Slow Axis Size: {c['height']} nm"] if c["slow axis"] else []
+    lines += [f"Rotate Ang.: {c['rotated']}"]
+    lines += [f"Lines: {ny // 4 if c['stopped'] == 'more held' else full * ny}"]
+    lines += [f"Aspect Ratio: {c['aspect'].split()[0]}"]
     lines += [sensor, "@Sens. Phase: V 1.000000 ", "@Sens. DeflSens: V 41.14015 nm/V"]
     body, at = b"", OFFSET
     for ch in channels:
@@ -181,7 +194,7 @@ def _list(
 ) -> list[str]:
     internal, soft = SENSORS.get(kind, ("Phase", "Sens. Phase"))
     unit = "V" if kind in SENSORS else "\xba"
-    stated = f"{size} {size}" if c["size numbers"] == 2 else size
+    stated = {"width twice": f"{size} {size}", "width": size}.get(c["size numbers"], f"{size} {c['high']}")
     return [
         "*Ciao image list",
         f"Data offset: {at}",

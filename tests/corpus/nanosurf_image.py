@@ -14,7 +14,8 @@ from made import Image, Made, Plane, Random, chosen, shape, surface
 
 FORMAT = "Nanosurf image (.nid)"
 GRID = {
-    "bits": [16, 32],
+    "bits": [16, 32, 8],
+    "order of bytes": ["Intel", "Motorola"],
     "channels": ["Z-Axis", "Deflection Z-Axis", "Deflection Z-Axis Z-AxisSensor", "Amplitude Z-Axis Phase"],
     "groups": ["forward backward", "backward forward", "forward"],
     "encoding": ["latin-1", "utf-8", "shift-jis"],
@@ -24,6 +25,7 @@ GRID = {
     "unsigned beside": [False, True],
     "numbers": ["e-05", "e-005"],
 }
+ORDERS = {"Intel": "<", "Motorola": ">"}
 KINDS = {
     "Z-Axis": (1, "m"),
     "Deflection": (0, "N"),
@@ -51,7 +53,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
             spread = 0.1 * full
             wished = surface(random, (ny, nx), spread)
             raw = np.round((wished - low) / full * 2 ** c["bits"] - 2 ** (c["bits"] - 1))
-            data += raw.astype(f"<i{c['bits'] // 8}").tobytes()
+            data += raw.astype(f"{ORDERS[c['order of bytes']]}i{c['bits'] // 8}").tobytes()
             if unit == "m":
                 heights = (raw + 2 ** (c["bits"] - 1)) / 2 ** c["bits"] * full + low
                 planes.append((name, Plane(name, heights, pixel, direction == "forward")))
@@ -113,7 +115,7 @@ def _section(
     for axis, (title, in_unit, spread, least) in enumerate(axes):
         fields |= {f"Dim{axis}Name": title, f"Dim{axis}Unit": in_unit}
         fields |= {f"Dim{axis}Range": _number(c, spread), f"Dim{axis}Min": _number(c, least)}
-    fields |= {"SaveMode": "Binary", "SaveBits": c["bits"], "SaveSign": "Signed", "SaveOrder": "Intel"}
+    fields |= {"SaveMode": "Binary", "SaveBits": c["bits"], "SaveSign": "Signed", "SaveOrder": c["order of bytes"]}
     return "\n".join([f"[DataSet-{number}]", *(f"{key}={value}" for key, value in fields.items()), ""])
 
 

@@ -30,7 +30,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     c = chosen(random, GRID, plain)
     if c["encoding"] == "utf-16":
         c["mark"] = False
-    held = lever(random)  # its sensitivity is in m/nA here
+    held = lever(random)  # its sensitivity is in m/nA here; given is m/A
     n = int(random.integers(80, 160))
     moves = motion(random, held, [("approach", 300), ("retract", 300)])
     z = np.linspace(moves[0][1].min(), moves[0][1].max(), n)
@@ -54,6 +54,6 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
         heights, bend = shown[count:] * 1e-9, signal[count:] * held.sensitivity
         turned = slice(None, None, -1) if role == "approach" else slice(None)
         parts.append(Part(role, heights[turned], bend[turned], held.spring_constant * bend[turned]))
-    curve = Curve(tuple(parts), held.spring_constant, None)
-    given: dict[str, Any] = {"spring_constant": held.spring_constant, "sensitivity": held.sensitivity}
+    curve = Curve(tuple(parts), held.spring_constant, held.sensitivity * 1e9)
+    given: dict[str, Any] = {"spring_constant": held.spring_constant, "sensitivity": held.sensitivity * 1e9}
     return Made(FORMAT, path, c, Curves((curve,)), given=given)

@@ -19,7 +19,8 @@ GRID = {
     "encoding": ["utf-8", "latin-1", "utf-16", "shift-jis"],
     "lateral": ["\xb5m", "nm", "um", "m"],
     "vertical": ["nm", "\xb5m", "m", "\xc5"],
-    "numbers": [".8e", ".6f", ".9g"],
+    "numbers": [".8e", ".6f", ".9g", ".0f"],
+    "comment": ["# ", "#", "% "],
     "missing": [False, True],
     "square": [True, False],
     "trailing gap": [False, True],
@@ -38,7 +39,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     values = surface(random, (ny, nx), relief(random, side)) / unit
     if c["missing"]:
         values[1, 2] = values[3, 0] = np.nan
-    if c["numbers"] == ".6f" and np.nanmax(np.abs(values)) < 0.1:
+    if c["numbers"] in (".6f", ".0f") and np.nanmax(np.abs(values)) < (0.1 if c["numbers"] == ".6f" else 100):
         c["numbers"] = ".8e"
     text = [[format(value, c["numbers"]) for value in row] for row in values]
     stored = np.array(text, float)
@@ -79,7 +80,7 @@ def _file(c: dict[str, Any], text: list[list[str]], size: tuple[float, float]) -
             f"# Value units: {c['vertical']}",
         ],
         "none": [],
-        "free comment": ["# measured on a wet day", "# 20 \xb5m scanner"],
+        "free comment": [f"{c['comment']}measured on a wet day", f"{c['comment']}20 \xb5m scanner"],
     }[c["head"]]
     for row in text:
         numbers = [number.replace(".", c["decimals"]) for number in row]

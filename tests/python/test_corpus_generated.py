@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The generated corpus: other people's readers agree with what is written, and the judge notices what is wrong."""
+"""The generated corpus: a sample of it is read rightly, and other people's readers agree with what is written."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "corpus"))
 import corpus
 import corpus_peers
 import generated
+import nanotouch as nt
+import synthetic
 from made import Curves, Image, Made, Plane
 
 IMAGES = [name for name in generated.writers() if "image" in name]
@@ -25,7 +29,7 @@ CURVES = [name for name in generated.writers() if "curve" in name]
 
 def made(name: str, seed: int, folder: Path) -> Made:
     place = folder / str(seed)
-    place.mkdir()
+    place.mkdir(parents=True)
     return generated.writers()[name](np.random.default_rng(seed), place, plain=True)
 
 
@@ -69,3 +73,92 @@ def test_other_readers_of_curves_agree_with_the_writer(name: str, tmp_path: Path
                 assert found.points[0] == sum(len(part.z) for part in first), peer
             assert found.travel == pytest.approx(travel, rel=1e-6), peer
             assert found.force == pytest.approx(force, rel=1e-6), peer
+
+
+def test_a_sample_is_read_rightly(tmp_path: Path) -> None:
+    """Three of each format; all of them is ``make corpus``."""
+    rows = list(generated.rows(3 * len(generated.MODULES), 1, (), tmp_path))
+    assert [
+        (row.made.format, row.seed, row.verdict) for row in rows if generated._class(row) in ("wrong", "refused")
+    ] == []
+    assert {row.made.format for row in rows} == set(generated.writers())
+
+
+def test_the_judge_notices_what_is_wrong(tmp_path: Path) -> None:
+    """The same file against another truth: size, orientation, sign, a segment more, a unit."""
+    image = made("Asylum image (.ibw)", 5, tmp_path)
+    assert isinstance(image.truth, Image)
+    plane = image.truth.defaults[0]
+    assert generated.judge(image).kind == "right"
+    for other, told in (
+        (replace(plane, pixel=(2 * plane.pixel[0], plane.pixel[1])), "dy"),
+        (replace(plane, heights=plane.heights[::-1]), "upside down"),
+        (replace(plane, heights=plane.heights[:, ::-1]), "mirrored"),
+        (replace(plane, heights=1.001 * plane.heights), "heights over"),
+        (replace(plane, heights=plane.heights[1:]), "pixels"),
+    ):
+        verdict = generated.judge(replace(image, truth=Image((other,))))
+        assert verdict.kind == "wrong"
+        assert told in verdict.reason
+    assert "no note" in generated.judge(replace(image, told=(("a dog",),))).reason
+    assert "read, though" in generated.judge(replace(image, must_refuse="it is none")).reason
+    assert "read without" in generated.judge(replace(image, given={"pixel_size": 1e-9})).reason
+    curve = made("Asylum curves (.ibw)", 5, tmp_path / "curves")
+    assert isinstance(curve.truth, Curves)
+    first = curve.truth.curves[0]
+    assert first.spring_constant is not None
+    for changed, told in (
+        (replace(first, parts=first.parts[:1]), "segments"),
+        (replace(first, spring_constant=1e-9 * first.spring_constant), "spring constant"),
+        (replace(first, parts=tuple(replace(p, z=-p.z) for p in first.parts)), "z "),
+        (
+            replace(first, parts=tuple(replace(p, force=1e9 * p.force) for p in first.parts if p.force is not None)),
+            "force",
+        ),
+    ):
+        verdict = generated.judge(replace(curve, truth=Curves((changed,))))
+        assert verdict.kind == "wrong"
+        assert told in verdict.reason
+    assert generated.judge(replace(image, path=tmp_path / "absent.ibw")).kind == "refused"
+
+
+def _heights(file: Path) -> float:
+    return float(np.ptp(nt.images.read(file).heights))
+
+
+def _trigger(file: Path) -> float:
+    """Largest force of the first approach above its free level."""
+    force = nt.curves.read(file)[0].segments[0].force
+    assert force is not None
+    return float(force.max() - np.median(force[: len(force) // 4]))
+
+
+#: What the maker's software wrote beside the data, and how near the data have to be.
+PRINTED: list[tuple[str, Callable[[Path], float], float, float, str]] = [
+    ("images/stp-1.stp", _heights, 13.7008e-9, 1e-4, "WSxM: Z Amplitude"),
+    ("corpus/images/sample_0.stp", _heights, 59.7449e-9, 1e-4, "WSxM: Z Amplitude"),
+    ("corpus/images/sur-2.sur", _heights, (103880 - 89120) * 1e-10, 1e-6, "Digital Surf: (Zmax - Zmin) dz"),
+    ("corpus/images/A151216.123306-02602.sxm", lambda f: float(nt.images.read(f).heights.mean()), -21.8616e-9, 1e-4,
+     "Nanonis: Z-Controller>Z, held over the scan"),
+    ("corpus/images/nid-1.nid", lambda f: nt.images.read(f).size[1], 20e-6, 1e-6, "Nanosurf: Image size"),
+    ("images/di-3.di", lambda f: nt.images.read(f).size[0], 10e-6, 1e-6, "NanoScope: Scan Size, aspect 1:1"),
+    ("images/spot_1-1000nm.ibw", lambda f: nt.images.read(f).size[1] * 255 / 256, 20e-6, 1e-4, "Asylum: FastScanSize"),
+    ("curves/fsas/Test.000", lambda f: float(np.ptp(nt.curves.read(f)[0].segments[1].z)) * 512 / 511, 300e-9, 1e-4,
+     "NanoScope: ramp of 300 nm (Test.txt)"),
+    ("curves/fmt-igor-fd_SiN_FD_plot.ibw", _trigger, 1e-8, 0.01, "Asylum: TriggerPoint"),
+    ("curves/fmt-jpk-cc_pr14-polymergel-2021.06.30.jpk-force", _trigger, 2.693631715897275 * 6.086e-8 * 0.061, 0.01,
+     "JPK: relative setpoint"),
+    ("curves/fmt-jpk-fd_spot3-0192.jpk-force", _trigger, 1.3137932359860578 * 7.000143623e-8 * 0.0434936664, 0.01,
+     "JPK: relative setpoint"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "read", "printed", "near", "where"), PRINTED, ids=[row[4] for row in PRINTED])
+def test_what_the_maker_prints(
+    name: str, read: Callable[[Path], float], printed: float, near: float, where: str
+) -> None:
+    """Gwyddion's files, text matrices, HDF5 and Nova's text have no such value in the files at hand."""
+    path = synthetic.DATA / name
+    if not path.exists():
+        pytest.skip(f"real data not here: {path}")
+    assert read(path) == pytest.approx(printed, rel=near), where
