@@ -166,6 +166,11 @@ def _file(
         if c["beside"] != "beyond":
             body += data
     lines.append("*File list end")
+    return _text(c, lines) + body
+
+
+def _text(c: dict[str, Any], lines: list[str]) -> bytes:
+    """The header, filled up to the first data."""
     text = "".join(f"\\{line}{c['ends']}" for line in lines)
     if c["version"] == "0x05300001":
         for new, old in (
@@ -176,7 +181,7 @@ def _file(
             text = text.replace(new, old)
     head = text.encode("latin-1") + b"\x1a"
     assert len(head) <= OFFSET, "a longer header than its place"
-    return head.ljust(OFFSET, b"\0") + body
+    return head.ljust(OFFSET, b"\0")
 
 
 def _list(
