@@ -140,7 +140,7 @@ def motion(
     deepest = -min(float(random.uniform(0.15, 0.4)) * travel, 8 * lever.sensitivity)  # detectors end at 10 V
     top = travel + deepest
     stiff = 10 ** float(random.uniform(-0.5, 0.7)) * lever.spring_constant
-    noise = 0.002 * travel
+    noise = min(0.002 * travel, 0.2 * lever.sensitivity)
     approaches = [i for i, (role, _) in enumerate(points) if role == "approach"]
     found, z = [], top
     rest_of_detector = float(random.choice((-1, 1)) * random.uniform(0.05, 0.5)) * lever.sensitivity
@@ -175,4 +175,5 @@ def pressed(random: Random, lever: Lever, z: Array, contact: float) -> Array:
     """Deflection over an elastic sample that is met at z = `contact` [m], with noise."""
     stiff = 10 ** float(random.uniform(-0.5, 0.7)) * lever.spring_constant
     bend = np.minimum(_bend(z - contact, lever, stiff), 8 * lever.sensitivity)
-    return np.asarray(bend + 0.2 * lever.sensitivity + 0.004 * np.ptp(z) * random.standard_normal(len(z)))
+    noise = min(0.004 * np.ptp(z), 0.2 * lever.sensitivity)
+    return np.asarray(bend + 0.2 * lever.sensitivity + noise * random.standard_normal(len(z)))
