@@ -153,7 +153,8 @@ def motion(
             last = not any(other == "retract" for other, _ in points[number + 1 :])
             heights = np.linspace(z, top if last else z + 0.3 * travel, n)
         elif role == "hold":
-            heights = z - 0.04 * travel * (1 - np.exp(-np.linspace(0, 3, n)))
+            creep = min(0.04 * travel, 0.5 * lever.sensitivity)
+            heights = z - creep * (1 - np.exp(-np.linspace(0, 3, n)))
         else:
             heights = np.full(n, z)
         held = np.full(n, z) if role == "hold" else heights  # at constant force

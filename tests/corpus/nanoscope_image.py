@@ -93,8 +93,8 @@ def _consistent(c: dict[str, Any]) -> dict[str, Any]:
 def _lines(random: Random, c: dict[str, Any], nx: int) -> tuple[int, int, range]:
     """Lines of the full scan, lines held by the data, lines that were measured."""
     ny = {"1:1": nx, "2:1": nx // 2, "4:1": nx // 4, "0.7": round(0.7 * nx), "1:1 lines": nx // 2}[c["aspect"]]
-    ny = max(ny, 4)
-    done = max(4, int(ny * random.uniform(0.4, 0.9)))
+    ny = ny if ny > 4 else 4
+    done = int(np.maximum(4, int(ny * random.uniform(0.4, 0.9))))
     if c["stopped"] == "zeros":
         return ny, ny, range(ny - done, ny) if c["down"] else range(done)
     if c["stopped"] == "short":
