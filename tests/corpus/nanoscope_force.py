@@ -159,14 +159,10 @@ def _file(
     lines += ["*Equipment list", "Description: Multimode 8 - Piezo J", "Microscope: MultiMode 8", "*Scanner list"]
     lines += ["Scanner type: AFM", "Piezo size: J", f"@Sens. Zsens: V {PIEZO:.5f} nm/V", "*Ciao scan list"]
     lines += [f"Operating mode: {mode}", "Scan Size: 2000 nm", "Samps/line: 64", "Lines: 64", "Aspect Ratio: 1:1"]
-    if c["kind"] == "capture":
-        lines += [
-            "PeakForce Capture: Allow",
-            "PFT Freq: 2 KHz",
-            "Peak Force Amplitude: 100",
-            f"Sample Points: {sync[1]}",
-        ]
-        lines += [f"Sync Distance: {sync[0]:.3f}", "Sync Distance New: 0", f"Sync Distance QNM: {sync[0]:.3f}"]
+    capture = c["kind"] == "capture"
+    lines += [f"PeakForce Capture: {'Allow' if capture else 'Never'}", "PFT Freq: 2 KHz", "Peak Force Amplitude: 100"]
+    lines += [f"Sample Points: {sync[1] if capture else 128}", f"Sync Distance: {sync[0]:.3f}"]
+    lines += ["Sync Distance New: 0", f"Sync Distance QNM: {sync[0]:.3f}"]
     lines += ["Capture mode : Previous", f"@Sens. ZsensSens: V {SENSOR:.4f} nm/V"]
     if unit is not None:
         lines.append(f"@Sens. DeflSens: V {held.sensitivity * 1e9:.10g}{unit}")

@@ -75,6 +75,32 @@ def test_other_readers_of_curves_agree_with_the_writer(name: str, tmp_path: Path
             assert found.force == pytest.approx(force, rel=1e-6), peer
 
 
+def test_afmformats_agrees_with_the_writer_of_nova(tmp_path: Path) -> None:
+    """It has to be given the calibration, with a sensitivity in m/A."""
+    import afmformats
+
+    file = made("Nova text curves (.txt)", 3, tmp_path)
+    assert isinstance(file.truth, Curves)
+    names = {"spring constant": file.given["spring_constant"], "sensitivity": file.given["sensitivity"]}
+    read = afmformats.load_data(file.path, meta_override=names)[0]
+    parts = file.truth.curves[0].parts
+    assert read["height (measured)"] == pytest.approx(np.concatenate([part.z for part in parts]), rel=1e-9)
+    force = np.concatenate([part.force for part in parts if part.force is not None])
+    assert read["force"] == pytest.approx(force, abs=1e-9 * np.ptp(force))
+
+
+def test_nanonispy_agrees_with_the_writer_of_nanonis(tmp_path: Path) -> None:
+    nanonispy = pytest.importorskip("nanonispy2")
+    file = made("Nanonis image (.sxm)", 3, tmp_path)
+    assert isinstance(file.truth, Image)
+    scan = nanonispy.read.Scan(str(file.path))
+    forward, backward = file.truth.defaults[0], file.truth.others[0]
+    assert np.array_equal(scan.signals["Z"]["forward"], forward.heights)
+    assert np.array_equal(scan.signals["Z"]["backward"][:, ::-1], backward.heights)
+    sides = [n * step for n, step in zip(forward.heights.shape[::-1], forward.pixel[::-1], strict=True)]
+    assert list(scan.header["scan_range"]) == pytest.approx(sides, rel=1e-6)
+
+
 def test_a_sample_is_read_rightly(tmp_path: Path) -> None:
     """Two of each format; many more is ``make corpus``."""
     rows = list(generated.rows(2 * len(generated.MODULES), 1, (), tmp_path))
