@@ -201,7 +201,7 @@ def test_other_refusals(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> No
     with pytest.raises(ReadError, match=r"not a force curve file that afmformats reads \(.csv, "):
         curves.read(unknown)
     image = synthetic.write_ibw_image(tmp_path / "image.ibw", {"HeightTrace": synthetic.asymmetric()}, 1e-7)
-    with pytest.raises(ReadError, match="its note lacks 'ImagingMode'"):
+    with pytest.raises(ReadError, match="a stack of pictures, not a force curve"):
         curves.read(image)
     cut = tmp_path / "cut.jpk-force"
     cut.write_bytes(jpk(tmp_path / "whole.jpk-force").read_bytes()[:2000])

@@ -79,7 +79,7 @@ _RAMPS = f"{_REAL}, {_MADE}"
 
 FORMATS: tuple[Format, ...] = (
     _reads("Bruker/Veeco/DI NanoScope", ".spm .000 .001 .di", "images", _OWN, f"{_REAL}, {_MADE}"),
-    _reads("Asylum Research (Igor binary wave)", ".ibw", "images", _ST, f"{_REAL}, {_MADE}"),
+    _reads("Asylum Research (Igor binary wave)", ".ibw", "images", _OWN, f"{_REAL}, {_MADE}"),
     _reads("JPK image (TIFF)", ".jpk .jpk-qi-image", "images", _ST, _REAL),
     _reads("JPK movie (HDF5), each frame a channel", ".h5-jpk", "images", _OWN, f"{_REAL}, {_MADE}"),
     _reads("Nanonis", ".sxm", "images", _OWN, f"{_REAL}, {_MADE}"),

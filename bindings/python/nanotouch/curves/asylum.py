@@ -10,6 +10,7 @@ forces.
 from __future__ import annotations
 
 import re
+import struct
 from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
@@ -34,12 +35,14 @@ _DEFLECTIONS = ("Defl", "Deflection")
 _NUMBERS = {"NumPtsPerSec": ("rate approach", "rate retract"), "InputTime": ("duration",),
             "ApproachVelocity": ("speed approach",), "RetractVelocity": ("speed retract",)}  # fmt: skip
 _TEXTS = {"MicroscopeModel": "instrument", "Version": "software version", "Date": "date", "Time": "time"}
+_SHAPE = 64 + 68  # where a wave of version 5 says it [byte]
 _REST = 0.1  # of the travel; a movement over less is a pause
 _ROLES: Mapping[int, Role] = {1: "approach", 0: "pause", -1: "retract"}
 
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """The one curve; ReadError for a wave that is no table of deflections and heights."""
+    _refuse_pictures(file)
     wave, note = wave_of(file)
     columns = _labels(wave, file)
     deflection_name = next((name for name in _DEFLECTIONS if name in columns), None)
@@ -61,6 +64,16 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     if notes:
         meta["notes"] = notes
     return [ForceCurve(segments, meta, printable(file.name))]
+
+
+def _refuse_pictures(file: Path) -> None:
+    """By the header alone: a picture is not loaded to be refused."""
+    head = head_of(file)
+    if len(head) < _SHAPE + 16:
+        return
+    _, _, layers, more = struct.unpack_from(f"{'<' if head[0] else '>'}4i", head, _SHAPE)
+    if layers > 0 or more > 0:
+        raise ReadError(f"{file}: a stack of pictures, not a force curve; images.read reads it")
 
 
 def _refuse(file: Path, note: str, columns: list[str]) -> NoReturn:

@@ -16,7 +16,7 @@ from .._io.readers import head_of, registered_for
 from .._io.words import printable
 from ..errors import InvalidValue, ReadError
 from ..formats import refusal
-from . import gsf, hdf5, jpk_movie, nanonis, nanoscope, ntmdt, surfacetopography, topostats, wsxm
+from . import asylum, gsf, hdf5, jpk_movie, nanonis, nanoscope, ntmdt, surfacetopography, topostats, wsxm
 from .channel import Channel, Plane
 from .checks import LENGTHS, check_scale, check_shape, filled, unusual
 from .topography import Topography
@@ -111,7 +111,7 @@ def reader_of(file: Path) -> tuple[str, Any]:
     refused = refusal(file, head, "images")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")
-    for own in (hdf5, jpk_movie, topostats, nanonis, gsf, ntmdt, nanoscope, wsxm):
+    for own in (hdf5, jpk_movie, topostats, nanonis, gsf, ntmdt, nanoscope, wsxm, asylum):
         with guarded(file, own.NAME):
             recognised = own.recognises(file, head)
         if recognised:

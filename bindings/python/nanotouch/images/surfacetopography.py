@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from .._io.files import guarded
 from ..errors import ReadError, require
 from . import gwyddion, headers, text_table
-from .channel import HEIGHT_NAMES, OTHER_NAMES, Channel, Plane, chosen, with_default
+from .channel import OTHER_NAMES, Channel, Plane, chosen, with_default
 from .checks import LENGTHS, PIXELS_PER_SIDE, check_shape
 
 NAME = "SurfaceTopography"
@@ -39,14 +39,14 @@ def channels(file: Path) -> list[Channel]:
     """The two-dimensional channels of a file."""
     with _opened(file) as reader:
         found, left_out = _images_in(reader, file)
-        return _listed(found, reader.format(), left_out)
+        return _listed(found, left_out)
 
 
 def read(file: Path, channel: str | None) -> Plane:
     """One channel, the height channel if none is named."""
     with _opened(file) as reader:
         found, left_out = _images_in(reader, file)
-        listed = _listed(found, reader.format(), left_out)
+        listed = _listed(found, left_out)
         number = chosen(listed, channel, file)
         broken = gwyddion.broken(file) if reader.format() == "gwy" else ()
         if number >= len(found):
@@ -59,22 +59,14 @@ def read(file: Path, channel: str | None) -> Plane:
         raw = np.ma.filled(np.ma.asarray(loaded.heights(), dtype=np.float64), np.nan)
         if raw.shape != tuple(info.nb_grid_pts):
             raise ReadError(f"{file}: {raw.shape} values, but its header states {tuple(info.nb_grid_pts)} pixels")
-        values, kind = _upright(raw, reader.format()), _kind(info, reader.format())
+        values, kind = _upright(raw, reader.format()), _kind(info)
         if kind != "height":
-            vertical = _stated_unit(info, reader.format())
+            vertical = _units(info.data_unit)[1]
         name, source = str(info.channel_id), f"{NAME}/{reader.format()}"
         no_size = "states no scan size"
         if not unsized and lateral not in LENGTHS:
             no_size = "states no lateral unit" if lateral is None else f"states the lateral unit {lateral!r}"
         notes = broken
-        if reader.format() == "ibw" and kind == "height" and str(info.data_kind.value) != "height":
-            vertical, notes = (
-                "m",
-                (
-                    *broken,
-                    f"no unit of {name!r} is stated: taken as m, in which such files hold heights",
-                ),
-            )
         if unsized or lateral not in LENGTHS:
             return Plane(name, values, vertical, None, source, no_size, notes=notes)
         lx, ly = (float(s) * LENGTHS[lateral] for s in loaded.physical_sizes)
@@ -110,32 +102,21 @@ def _images_in(reader: Any, file: Path) -> tuple[list[Any], list[Channel]]:
     return found, left_out
 
 
-def _stated_unit(info: Any, format_: str) -> str | None:
-    """Of a channel that is no height. Asylum's without a unit are volts to SurfaceTopography, whatever they are."""
-    unit = _units(info.data_unit)[1]
-    return None if format_ == "ibw" and unit == "V" and "potential" not in str(info.name).casefold() else unit
-
-
-def _kind(info: Any, format_: str) -> str:
-    """What a channel holds; SurfaceTopography calls a height what has no unit, or the unit of an amplitude.
-
-    In Asylum's files it knows some names and takes the others, as MapHeight, for volts.
-    """
+def _kind(info: Any) -> str:
+    """What a channel holds; SurfaceTopography calls a height what has no unit, or the unit of an amplitude."""
     kind, name = str(info.data_kind.value), str(info.name).casefold()
     other = next((part for part in OTHER_NAMES if part in name), "")
-    if format_ == "ibw" and kind == "voltage" and not other and any(part in name for part in HEIGHT_NAMES):
-        return "height"
     return other or kind if kind == "height" else kind
 
 
-def _listed(found: list[Any], format_: str, left_out: list[Channel]) -> list[Channel]:
-    return with_default([*(_described(info, _kind(info, format_), format_) for info in found), *left_out])
+def _listed(found: list[Any], left_out: list[Channel]) -> list[Channel]:
+    return with_default([*(_described(info, _kind(info)) for info in found), *left_out])
 
 
-def _described(info: Any, kind: str, format_: str) -> Channel:
+def _described(info: Any, kind: str) -> Channel:
     lateral, vertical = _units(info.unit)
     if kind != "height":
-        vertical = _stated_unit(info, format_)
+        vertical = _units(info.data_unit)[1]
     size = None
     if info.physical_sizes is not None and lateral in LENGTHS:
         lx, ly = (float(s) * LENGTHS[lateral] for s in info.physical_sizes)
