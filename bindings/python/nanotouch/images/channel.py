@@ -68,7 +68,7 @@ class Plane:
     mask : ndarray, shape (ny, nx), bool, optional
         True where the file says that a value was filled in, which stays as it is.
     source : str
-        Reader and format, as ``"SurfaceTopography/ibw"``.
+        Reader and format, as ``"nanotouch/asylum-image"``.
     notes : tuple of str
         What was left out or supplied.
     """

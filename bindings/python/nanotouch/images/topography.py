@@ -31,7 +31,7 @@ class Topography:
     channel : str
         The channel that was read.
     source : str
-        What read it, as ``"SurfaceTopography/ibw"``.
+        What read it, as ``"nanotouch/asylum-image"``.
     mask : ndarray, shape (ny, nx), bool
         True where a height was not measured but filled in from its neighbours; nowhere if not given.
     notes : tuple of str
