@@ -7,7 +7,7 @@ VENV := .venv/bin
 # five times the processor time with two.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz sanitize sanitize-sample mutate damage corpus heavy windows macos kernel conformance bench lint format clean
+.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz sanitize sanitize-sample mutate damage corpus heavy adversary windows macos kernel conformance bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -92,6 +92,10 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@cmake --build --preset dev --target test_session_adversary test_session_mailbox
 	@build/dev/tests/c/test_session_mailbox 1000
 	@$(VENV)/python tests/heavy/guarantee.py
+
+adversary:  ## 20 000 runs by all doors of a person (session, live, devices, mailbox) against every printed number; FIRST=seed COUNT=n ROWS=file
+	@tools/setup.sh test
+	@$(VENV)/python tests/heavy/adversary.py --first $(or $(FIRST),0) --count $(or $(COUNT),20000) $(if $(ROWS),--rows $(ROWS))
 
 windows:  ## a wheel for 64-bit Windows in build/wheels, tested under Wine, and the C tests there; some ten minutes
 	@tools/setup.sh windows

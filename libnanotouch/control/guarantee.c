@@ -5,6 +5,7 @@
  * the stiffest contact in series, as stiff as it is on the mean of that way (hazard.h). */
 #include <math.h>
 
+#include "control/bound.h"
 #include "core/same_bits.h"
 #include "nanotouch/guarantee.h"
 #include "nanotouch/margins.h"
@@ -161,6 +162,11 @@ static double lateral_force(const nt_guarantee *found, const basis *b, const nt_
 
 nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
 {
+    return nt_guarantee_within(rig, settings, hazard, HUGE_VAL);
+}
+
+nt_guarantee nt_guarantee_within(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard, double relief)
+{
     const nt_limits *limits = &settings->limits;
     const basis b = basis_of(rig, settings, hazard);
     const nt_probe *probe = &b.equivalent.rig.probe;
@@ -177,8 +183,9 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     /* (1 + a)/(1 - b) of the limit, a^2/sigma_k^2 + b^2/sigma_S^2 = 9: a + b is at most 3 hypot */
     const double off = NT_GUARANTEE_SIGMAS * hypotenuse(probe->spring_constant_sigma, probe->sensitivity_sigma);
     found.calibration = limits->force * off / (1.0 - off);
-    found.speed = b.vertical + (found.moves_sideways ? b.travel * hazard->slope * limits->lateral_speed : 0.0);
-    const double closer = found.speed * b.reaction + falls_behind(&b, &rig->stage);
+    const double climbs = found.moves_sideways ? b.travel * hazard->slope * limits->lateral_speed : 0.0;
+    found.speed = b.vertical + climbs;
+    const double closer = b.vertical * b.reaction + fmin(climbs * b.reaction, relief) + falls_behind(&b, &rig->stage);
     const int slides = found.moves_sideways && limits->lateral_speed > 0.0;
     found.motion = b.k_eff * closer + (slides ? b.spring * hazard->rise : 0.0);
     found.ringing = b.k_eff * swing;

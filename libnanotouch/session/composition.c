@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "control/bound.h"
 #include "core/problem.h"
 #include "session/grip.h"
 #include "session/state.h"
@@ -54,13 +55,15 @@ static nt_status promise(nt_composition *made, nt_problem *problem)
     const double clearance = setup->preflight ? setup->clearance : HUGE_VAL;
     nt_hazard hazard = nt_hazard_of(plan, &setup->rig, &setup->settings, nt_composition_slope(made), clearance);
     nt_composition_add_pushed(made, &hazard);
-    made->guarantee = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
+    const double relief = nt_hazard_relief(plan);
+    made->guarantee = nt_guarantee_within(&setup->rig, &setup->settings, &hazard, relief);
     if (nt_composition_pushes(made)) { /* sideways they give way: no slope does */
         hazard.slope = made->reach.slope;
-        made->guarantee.lateral_force = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard).lateral_force +
-                                        nt_composition_resistance(made, made->guarantee.force);
+        const nt_guarantee aside = nt_guarantee_within(&setup->rig, &setup->settings, &hazard, relief);
+        made->guarantee.lateral_force = aside.lateral_force + nt_composition_resistance(made, made->guarantee.force);
     }
-    made->guarantee.lateral_force += 2.0 * nt_grip_uneven(plan, made->guarantee.force); /* it may turn after the limit */
+    made->guarantee.lateral_force +=
+        2.0 * nt_grip_uneven(plan, made->guarantee.force); /* it may turn after the limit */
     return NT_OK;
 }
 

@@ -9,5 +9,7 @@
 double nt_grip_friction(const nt_plan *plan, double load);
 /* What radius and material that change from place to place push sideways at most, under loads up to one [N]. */
 double nt_grip_uneven(const nt_plan *plan, double load);
+/* hazard.c: how far the surface of a plan can rise under the tip; infinite where that is not known [m]. */
+double nt_hazard_relief(const nt_plan *plan);
 
 #endif

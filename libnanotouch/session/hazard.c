@@ -11,6 +11,7 @@
 
 #include <math.h>
 
+#include "control/bound.h"
 #include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/preflight.h"
@@ -141,7 +142,7 @@ static double stiffness_over(const nt_well *w, double force, double way)
  * failure does. */
 static void add_stiffness(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig, const nt_settings *settings)
 {
-    const nt_guarantee still = nt_guarantee_compute(rig, settings, hazard);
+    const nt_guarantee still = nt_guarantee_within(rig, settings, hazard, nt_hazard_relief(plan));
     const double spring = rig->probe.spring_constant * (1.0 + NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma);
     const nt_well hard = {.plan = plan, .place = place_of(plan, plan->most.radius, 1), .spring = spring};
     const double reckoned = spring / (1.0 + spring / hazard->stiffness), moved = still.motion + still.ringing;
@@ -178,10 +179,26 @@ static double force_at_tare(const nt_plan *plan, const nt_rig *rig, const nt_set
     return plan->largest_pull_off_force;
 }
 
+/* No spline is beyond its coefficients. A sample that keeps dents is deeper than its surface, and what lies on a flat
+ * is higher. */
+double nt_hazard_relief(const nt_plan *plan)
+{
+    const nt_surface *surface = plan->surface;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    if (!surface || !surface->coefficients || plan->dents)
+        return HUGE_VAL;
+    for (long i = 0; i < surface->nx * surface->ny; ++i) {
+        low = fmin(low, surface->coefficients[i]);
+        high = fmax(high, surface->coefficients[i]);
+    }
+    return high > low ? high - low : HUGE_VAL;
+}
+
 nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope,
                        double clearance)
 {
     const nt_probe *lever = &rig->probe;
+    const double relief = nt_hazard_relief(plan);
     const double off = NT_GUARANTEE_SIGMAS * hypotenuse(lever->spring_constant_sigma, lever->sensitivity_sigma);
     const double free_force = nt_supervisor_make(rig, settings).free_force / (1.0 - off); /* as it may be */
     nt_hazard hazard = {.slope = slope,
@@ -191,7 +208,7 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
                         .tared = force_at_tare(plan, rig, settings, clearance)};
     hazard.unseen = unseen_indentation(plan, free_force + 0.5 * hazard.tared);
     add_stiffness(&hazard, plan, rig, settings);
-    const nt_guarantee still = nt_guarantee_compute(rig, settings, &hazard);
+    const nt_guarantee still = nt_guarantee_within(rig, settings, &hazard, relief);
     hazard.rise = rise_under(plan, still.force);
     const nt_servo_equivalent equivalent = nt_servo_equivalent_of(rig, settings, hazard.stiffness);
     const double rings = nt_servo_ringing(&equivalent, fmax(still.speed, settings->limits.retract_speed));
@@ -200,7 +217,7 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
         real.probe.spring_constant *= 1.0 + side * NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
         add_places(&hazard, plan, &real, &still, rings);
     }
-    const double most = nt_guarantee_compute(rig, settings, &hazard).force;
+    const double most = nt_guarantee_within(rig, settings, &hazard, relief).force;
     hazard.deepest = deepest_under(plan, most);
     hazard.friction = nt_grip_friction(plan, most);
     if (lever->lateral_stiffness > 0.0) { /* what it shows can be stopped */

@@ -314,8 +314,8 @@ static inline int strike(nt_session *session, const plot *p, dice *d, long end, 
     return 1;
 }
 
-/* What the operator reads before arming: promised of the same setup with the rig as it is believed to be, and of nothing
- * else. */
+/* What the operator reads before arming: promised of the same setup with the rig as it is believed to be, and of
+ * nothing else. */
 static inline nt_status take_promise(plot *p)
 {
     nt_session_setup believed = p->setup;

@@ -79,7 +79,8 @@ static void what_leads_the_tip_says_where_it_goes(void **state)
     nt_session_close(whole);
 }
 
-/* Where nothing else leads, a path holds what leads the tip: inputs, and requests, which are checked by the same call. */
+/* Where nothing else leads, a path holds what leads the tip: inputs, and requests, which are checked by the same call.
+ */
 static void what_lies_beside_a_declared_path_is_refused(void **state)
 {
     (void)state;

@@ -91,7 +91,7 @@ def swept(session: nt.Session, speed: float, blows: int = 40) -> tuple[float, fl
     return force, aside
 
 
-def fast(slope: float, mode: Any, path: Any = None) -> nt.Session:
+def fast(slope: float, mode: Any, path: Any = None, lateral_speed: float = 300e-6) -> nt.Session:
     """A rig whose stage goes 0.3 mm/s sideways. At these slopes its margins are low: nobody asks for them here."""
     rig = nt.Rig(master={"axes": 3, "mass": 0.05, "damping": 5.0},
                  probe={"lateral_stiffness": 50.0, "spring_constant": 8.0})  # fmt: skip
@@ -99,7 +99,7 @@ def fast(slope: float, mode: Any, path: Any = None) -> nt.Session:
                      adhesion={"work_of_adhesion": 0.01, "hamaker_constant": 1e-20})  # fmt: skip
     settings = nt.Settings.for_rig(rig)
     settings.limits.force, settings.gains.set_point = 400e-9, 100e-9
-    settings.limits.lateral_speed, settings.limits.indentation = 300e-6, 1e-7
+    settings.limits.lateral_speed, settings.limits.indentation = lateral_speed, 1e-7
     settings.gains.alpha_p, settings.gains.alpha_f, settings.gains.force_gain = 1e-3, 2e4, 0.0
     return nt.Session(scene, rig, surface=ridges(slope), clearance=20e-9, settings=settings, mode=mode, path=path,
                       minimum_margin=0.0)  # fmt: skip
@@ -112,6 +112,16 @@ def test_flanks_press_no_more_than_promised_in_the_default_mode() -> None:
     force, aside = swept(session, 0.3)
     assert 836e-9 < force < promised.force
     assert 2000e-9 < aside < promised.lateral_force
+
+
+def test_a_surface_rises_by_no_more_than_its_relief() -> None:
+    """However fast the tip goes: 64 nm of relief, where slope and speed would make 480 nm of the reaction time."""
+    session = fast(0.2, "point", lateral_speed=3e-3)
+    promised = session.guarantee()
+    stands = fast(0.2, "point", lateral_speed=1e-9).guarantee()
+    assert 60e-9 * 8.0 < promised.motion - stands.motion < 75e-9 * 8.0 * 1.15
+    force, _ = swept(session, 1.0)
+    assert 450e-9 < force < promised.force
 
 
 def test_the_same_rig_has_the_same_margin_whatever_its_mode_is_called() -> None:

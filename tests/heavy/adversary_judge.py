@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""All that a session prints, against what was met: the one place where an adversary's runs are judged (adversary.py).
+
+A change under a pressed tip makes another promise: the old one goes on to hold, too, until the tip has come below the
+new limit (force), or has left the sample (sideways, indentation)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+FADED = 50e-3
+"""after a stop the motor's force is gone by then, or by what is printed for the largest [s]"""
+TARE = 0.5
+"""time between the tare and the first tick, at most [s]"""
+LIES = {"gain", "drift", "noise", "slip"}
+FAILURES = ("deflection read wrong", "deflection sensor dead", "slip of stage or surface", "stage runs or turns")
+
+
+def failure_of(fault: Any) -> str:
+    """Which of the printed failures a fault is (tests/c/failure_of.h); "": the first number holds."""
+    if fault is None:
+        return ""
+    name, channel = fault[0], fault[1]
+    if name in ("jump", "limit"):
+        return FAILURES[2]
+    if channel == "stage":
+        return FAILURES[3]
+    if channel == "deflection" and name in LIES | {"stuck"}:
+        return FAILURES[0] if name in LIES else FAILURES[1]
+    if channel == "stage_position" and name in LIES | {"stuck"}:
+        return FAILURES[3]
+    return ""
+
+
+class Met(NamedTuple):
+    """One number of the promise, and what came closest to it."""
+
+    what: str
+    met: float
+    promised: float
+    time: float
+    """in the session [s]"""
+
+    @property
+    def share(self) -> float:
+        return self.met / self.promised if self.promised > 0.0 else (math.inf if self.met > 0.0 else 0.0)
+
+
+class Judge:
+    """Of one session. Faults as drawn; ``stands``: nothing leads the tip sideways, so that indentation is promised."""
+
+    def __init__(self, fault: Any = None, stands: bool = False) -> None:
+        self.failure, self.fault, self.stands = failure_of(fault), fault, stands
+        self.worst: dict[str, Met] = {}
+        self.now: Any = None
+        self.warned = False  # that the limit protects nothing: a snap-in alone passes it
+        self.carried = {"force": 0.0, "sideways": 0.0, "indentation": 0.0}
+        self.stopped = -1.0  # since when [s]; below 0: it is in RUN
+        self.before = np.zeros(3)  # of the motor [N]
+        self.given = 0.0  # to the hand since [J]
+        self.last: Any = None
+
+    @property
+    def broken(self) -> list[Met]:
+        return [one for one in self.worst.values() if not one.share <= 1.0 + 1e-9]
+
+    def promise(self, session: Any) -> None:
+        """What is printed from now on."""
+        made, settings = session.guarantee(), session.settings
+        if self.now is not None:
+            for name, old in self._numbers().items():
+                self.carried[name] = max(self.carried[name], old)
+        self.now, self.limit = made, float(settings.limits.force)
+        self.warned |= made.warning is not None
+        self.motor = min(float(settings.limits.motor_force), float(session.rig.master.max_force))
+
+    def _numbers(self) -> dict[str, float]:
+        adds = self.now.failures.get(self.failure, 0.0)
+        return {"force": self.now.force + adds, "sideways": self.now.lateral_force,
+                "indentation": self.now.indentation}  # fmt: skip
+
+    def _met(self, what: str, values: Any, promised: Any, time: Any) -> None:
+        """The place that comes closest; what is not a number has broken it."""
+        values, promised = np.abs(np.atleast_1d(values)), np.broadcast_to(promised, np.shape(np.atleast_1d(values)))
+        if not len(values):
+            return
+        share = np.where(np.isnan(values), np.inf, values / np.maximum(promised, 1e-300))
+        i = int(np.argmax(share))
+        found = Met(what, float(values[i]), float(promised[i]), float(np.atleast_1d(time)[i]))
+        if what not in self.worst or not found.share <= self.worst[what].share:
+            self.worst[what] = found
+
+    def _allowed(self, name: str, let_go: Any) -> Any:
+        """The promise of each tick: the old one, too, until it has let go."""
+        now, old = self._numbers()[name], self.carried[name]
+        free = np.flatnonzero(let_go)
+        allowed = np.full(len(let_go), max(now, old))
+        if len(free):
+            allowed[free[0] + 1 :] = now
+            self.carried[name] = 0.0
+        return allowed
+
+    def watch(self, columns: Mapping[str, Any]) -> None:
+        """A block of ticks."""
+        time = np.asarray(columns["time"])
+        if not len(time):
+            return
+        force = columns["tip_force"]
+        free = np.asarray(columns["contact_radius"]) <= 0.0
+        most = self._allowed("force", np.abs(force) <= self.limit) + self.now.zero_drift * (time + TARE)
+        self._met("force", force, most, time)
+        aside = self._allowed("sideways", free)
+        if "tip_force_x" in columns and not self.failure:
+            self._met("sideways", np.hypot(columns["tip_force_x"], columns["tip_force_y"]), aside, time)
+        depth = self._allowed("indentation", free)
+        if self.stands and self.fault is None:
+            self._met("indentation", np.maximum(-np.asarray(columns["gap"]), 0.0), depth, time)
+        self._hand(columns, time)
+
+    def _hand(self, columns: Mapping[str, Any], time: Any) -> None:
+        """Motor and hand: never above the limit; after a stop it only fades, and little energy goes to the hand."""
+        nothing = np.zeros(len(time))
+        force = np.column_stack([columns.get("motor_force_x", nothing), columns.get("motor_force_y", nothing),
+                                 columns["motor_force"]])  # fmt: skip
+        place = np.column_stack([columns.get("master_x", nothing), columns.get("master_y", nothing),
+                                 columns["master_position"]])  # fmt: skip
+        self._met("motor", np.abs(force).max(axis=1), self.motor, time)
+        hand = getattr(self.now, "hand", None)
+        if hand is None or (self.fault is not None and self.fault[1] in ("motor", "master_position")):
+            return  # nothing is printed, or what motor and hand really do is not in the columns
+        self._met("hand", np.linalg.norm(force, axis=1), hand.force, time)
+        for i, state in enumerate(columns["state"]):
+            if state == 0 or (self.last is not None and time[i] < self.last[0]):
+                self.stopped = -1.0
+            elif self.stopped < 0.0 and self.last is not None:
+                self.stopped, self.given = float(time[i]), 0.0
+                self.before = self.last[1]
+            if self.stopped >= 0.0 and state != 0 and self.last is not None:
+                self._faded(force[i], place[i], float(time[i]), hand)
+            self.last = (float(time[i]), force[i], place[i])
+
+    def _faded(self, force: Any, place: Any, time: float, hand: Any) -> None:
+        rest, met = 1e-6 * self.motor, float(np.linalg.norm(force))
+        self._met("motor after a stop", met, float(np.linalg.norm(self.before)) + rest, time)
+        if time - self.stopped > max(FADED, hand.fade_time) + 2e-3:
+            self._met("motor faded", met, rest, time)
+        way = place - self.last[2]
+        if np.isfinite(way).all():
+            self.given += float(np.dot(self.last[1], way))
+            self._met("energy to the hand", max(self.given, 0.0), hand.energy + 1e-9, time)

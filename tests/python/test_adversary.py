@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A small sample of tests/heavy/adversary.py, which takes as many runs as one likes; and that its judge can judge."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "heavy"))
+
+from adversary import run
+from adversary_judge import Judge
+
+
+@pytest.mark.parametrize(
+    ("door", "first"), [("session", 0), ("session", 100), ("live", 0), ("master", 0), ("slave", 0)]
+)
+def test_no_number_is_broken(door: str, first: int) -> None:
+    """Two runs each, by the doors that take no time of the clock."""
+    rows = [run(seed, door) for seed in range(first, first + 2)]
+    assert all(not row.get("broken") for row in rows), rows
+    assert any("worst" in row for row in rows)  # not all are refused before arming
+
+
+def flat(**changed: Any) -> dict[str, Any]:
+    """Ten ticks of nothing."""
+    names = ("time", "tip_force", "tip_force_x", "tip_force_y", "contact_radius", "gap", "motor_force",
+             "master_position", "state")  # fmt: skip
+    return {name: np.zeros(10) for name in names} | {"time": np.arange(10) * 1e-4} | changed
+
+
+@pytest.mark.parametrize(
+    ("what", "column"), [("force", "tip_force"), ("sideways", "tip_force_x"), ("indentation", "gap"),
+                         ("motor", "motor_force")]
+)  # fmt: skip
+def test_the_judge_finds_what_is_broken(what: str, column: str) -> None:
+    """Just below and just above each promise, and what is not a number."""
+    session = nt.Session(nt.Scene(friction={"shear_strength": 50e6}), nt.Rig(probe={"lateral_stiffness": 50.0}))
+    promised = session.guarantee()
+    limit = {
+        "force": promised.force, "sideways": promised.lateral_force, "indentation": -promised.indentation,
+        "motor": min(session.settings.limits.motor_force, session.rig.master.max_force),
+    }[what]  # fmt: skip
+    for share, breaks in ((0.99, False), (1.03, True), (np.nan, True)):
+        judge = Judge(stands=True)
+        judge.promise(session)
+        judge.watch(flat(**{column: np.full(10, share * limit)}))
+        assert (what in [one.what for one in judge.broken]) == breaks
