@@ -48,9 +48,6 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--channel", metavar="NAME", help="channel of an image or a map, for .gsf")
     parser.add_argument("--pixel-size", metavar="LENGTH", help="of an image that does not state it, for .gsf, as 10nm")
     output.add_overwrite(parser)
-    parser.add_argument(
-        "--untrusted", action="store_true", help="open FILE in a worker with limits on memory, time and open files"
-    )
     parser.set_defaults(run=run)
 
 
@@ -71,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
         else:
             if ending in ONE_CURVE and record.is_recording(args.file):
                 raise InvalidValue(f"--out {args.out}: a recording is written as .csv, .h5 or .hdf5")
-            found = curves.read(args.file, untrusted=args.untrusted, **_calibration(args))
+            found = curves.read(args.file, **_calibration(args))
             what = _export_curves(_picked(found, args), args.out, ending == ".csv", progress)
     args.answer = {"file": str(args.out), "holds": what}
     print(f"{args.out}: {what}")
@@ -102,15 +99,13 @@ def _export_image(args: argparse.Namespace, ending: str) -> str:
         return _export_map(args, ending)
     if ending == ".gsf":
         size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
-        topography = images.read(args.file, args.channel, pixel_size=size, untrusted=args.untrusted)
+        topography = images.read(args.file, args.channel, pixel_size=size)
         images.write(args.out, topography)
         ny, nx = topography.shape
         told = f"{topography.channel or 'heights'}, {nx} x {ny} pixels"
         if topography.masked_pixels:
             told += f"; {topography.masked_pixels} missing ones are filled in, which .gsf cannot say; .gwy can"
         return told
-    if args.untrusted:
-        raise InvalidValue("--untrusted: all channels of a file are read in this process; export one as .gsf")
     found, left_out = images.planes(args.file)
     images.write_planes(args.out, found)
     for text in left_out:

@@ -90,9 +90,6 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
         "--calibration", metavar="FILE", help="CSV table of both for many files: file,spring_constant,sensitivity"
     )
     parser.add_argument(
-        "--untrusted", action="store_true", help="open files in a worker with limits on memory, time and open files"
-    )
-    parser.add_argument(
         "--poisson-ratio", type=number(-0.99, 0.5), metavar="NU", help="of the sample: also gives its Young's modulus"
     )
     parser.add_argument("--scene", metavar="SCENE", help=scenes.HELP.format(what="tip, sample and adhesion"))
@@ -165,7 +162,6 @@ def reading(args: argparse.Namespace) -> dict[str, Any]:
         "spring_constant": _quantity(args.spring_constant, "N/m"),
         "sensitivity": None if args.sensitivity is None else nt.curves.parse_sensitivity(args.sensitivity),
         "calibration": args.calibration,
-        "untrusted": args.untrusted,
     }
 
 

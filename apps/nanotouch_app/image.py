@@ -39,7 +39,6 @@ def add_parser(subparsers: Any) -> None:
     what.add_argument("--channel", metavar="NAME", help="channel of the image (nanotouch info lists them)")
     what.add_argument("--pixel-size", metavar="LENGTH", help="pixel size of an image that does not state it, as 10nm")
     what.add_argument("--z-unit", metavar="UNIT", help="height unit of an image that does not state it: nm, um, ...")
-    what.add_argument("--untrusted", action="store_true", help="read it in a guarded process")
     steps = parser.add_argument_group("what is done, in this order")
     steps.add_argument(
         "--level", metavar="METHOD",
@@ -179,7 +178,7 @@ def _shown(parameter: images.Parameter) -> str:
 
 def _read(args: argparse.Namespace, file: Path) -> images.Topography:
     pixel_size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
-    return images.read(file, args.channel, pixel_size=pixel_size, z_unit=args.z_unit, untrusted=args.untrusted)
+    return images.read(file, args.channel, pixel_size=pixel_size, z_unit=args.z_unit)
 
 
 def _described(image: images.Topography) -> str:

@@ -28,27 +28,24 @@ def add_parser(subparsers: Any) -> None:
         description="Say what an AFM image, a force curve file or a recording holds.",
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="an AFM image, a force curve file or a recording")
-    parser.add_argument(
-        "--untrusted", action="store_true", help="open FILE in a worker with limits on memory, time and open files"
-    )
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is none of them."""
     with output.busy("reading"):
-        lines, facts = _described(args.file, args.untrusted)
+        lines, facts = _described(args.file)
     args.answer = {"file": str(args.file), **facts}
     print("\n".join(lines))
     return 0
 
 
-def describe(file: Path, untrusted: bool = False) -> list[str]:
+def describe(file: Path) -> list[str]:
     """What a file holds, in lines."""
-    return _described(file, untrusted)[0]
+    return _described(file)[0]
 
 
-def _described(file: Path, untrusted: bool) -> Answer:
+def _described(file: Path) -> Answer:
     """The answer. Some endings serve both kinds (.ibw, .h5), so what the file is decided by reading it."""
     if record.is_recording(file):
         return _describe_recording(file)
@@ -59,7 +56,7 @@ def _described(file: Path, untrusted: bool) -> Answer:
     problems: list[ReadError | MissingExtra] = []
     for kind in (_describe_curves, _describe_image):
         try:
-            return kind(file, untrusted)
+            return kind(file)
         except (ReadError, MissingExtra) as error:
             problems.append(error)
     missing = [error for error in problems if isinstance(error, MissingExtra)]
@@ -103,8 +100,8 @@ def _describe_thermal(file: Path) -> Answer:
     }  # fmt: skip
 
 
-def _describe_image(file: Path, untrusted: bool) -> Answer:
-    listed = images.channels(file, untrusted=untrusted)
+def _describe_image(file: Path) -> Answer:
+    listed = images.channels(file)
     lines = [f"{file.name}: AFM image, {len(listed)} channel{'s' if len(listed) > 1 else ''}"]
     for channel in listed:
         shape = "? pixels" if channel.shape is None else f"{channel.shape[1]} x {channel.shape[0]} pixels"
@@ -114,7 +111,7 @@ def _describe_image(file: Path, untrusted: bool) -> Answer:
         lines.append(f"  {channel.name:24} {channel.kind:11} {shape}, {size}, unit {unit}{mark}")
     facts: dict[str, Any] = {"kind": "image", "channels": [_channel(channel) for channel in listed]}
     try:
-        topography = images.read(file, untrusted=untrusted)
+        topography = images.read(file)
     except ReadError as error:
         reason = str(error).removeprefix(f"{file}: ")
         return [*lines, f"  cannot be touched as it is: {reason}"], facts | {"cannot_be_touched": reason}
@@ -139,8 +136,8 @@ def _channel(channel: images.Channel) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _describe_curves(file: Path, untrusted: bool) -> Answer:
-    found = curves.read(file, untrusted=untrusted)
+def _describe_curves(file: Path) -> Answer:
+    found = curves.read(file)
     first = found[0]
     lines = [f"{file.name}: {len(found)} force curve{'s' if len(found) > 1 else ''}, {first.meta.get('format', '')}"]
     for key, unit in _META:

@@ -18,6 +18,7 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 import nanotouch as nt
+from nanotouch._io import guard
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app import examples, stop
@@ -110,6 +111,10 @@ def _complete(parser: argparse.ArgumentParser, command: str) -> None:
     parser.formatter_class = Formatter
     jobs = [job for action in parser._actions if isinstance(action, argparse._SubParsersAction)
             for job in action.choices.values()]  # fmt: skip
+    for one in jobs or [parser]:
+        one.add_argument(
+            "--trusted", action="store_true", help="read files in this process, without its guard (docs/security.md)"
+        )
     for one in jobs or [parser] * (command != "live"):  # a window has no results
         one.add_argument("--json", action="store_true", help="print the results as JSON, SI; null: not known")
 
@@ -133,7 +138,7 @@ def _run(arguments: list[str]) -> int:
         if "" in (value if isinstance(value, list) else [value]):
             raise InvalidValue(f"{name.replace('_', '-')} is empty: is it a variable of the shell that is not set?")
     work = _module(args.command).run
-    with stop.on_signals():
+    with stop.on_signals(), guard.by_default(not args.trusted):
         try:
             if not getattr(args, "json", False):
                 return int(work(args))

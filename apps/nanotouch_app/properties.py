@@ -29,14 +29,11 @@ def add_reading(group: Any) -> None:
         "--level", metavar="METHOD", help="how IMAGE is levelled: auto, or plane, poly2 .. poly6, lines, rows, medians "
         "and terraces, joined by +; none (default: auto)",
     )  # fmt: skip
-    group.add_argument(
-        "--untrusted", action="store_true", help="open IMAGE in a worker with limits on memory, time and open files"
-    )
 
 
 def refuse_reading(args: argparse.Namespace) -> None:
     """Where there is no IMAGE to read."""
-    for option in ("channel", "pixel_size", "z_unit", "level", "untrusted"):
+    for option in ("channel", "pixel_size", "z_unit", "level"):
         if getattr(args, option) not in (None, False):
             raise InvalidValue(f"--{option.replace('_', '-')} goes with an IMAGE")
 
@@ -49,7 +46,6 @@ def reading(args: argparse.Namespace) -> dict[str, Any]:
         "level": getattr(args, "level", None) or "auto",
         "pixel_size": None if pixel_size is None else parse_quantity(pixel_size, "m"),
         "z_unit": getattr(args, "z_unit", None),
-        "untrusted": getattr(args, "untrusted", False),
     }
 
 

@@ -25,7 +25,8 @@ def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     with output.busy("reading"):
         out, recording = record.recover(args.file, args.out)
-    args.answer = {"file": str(out), "rows": len(recording), "until_s": float(recording.time[-1]),
-                   "incomplete": recording.incomplete}  # fmt: skip
-    print(f"{out}: {len(recording)} rows up to {recording.time[-1]:.6g} s, incomplete: {recording.incomplete}")
+    until = float(recording.time[-1]) if len(recording) else None
+    args.answer = {"file": str(out), "rows": len(recording), "until_s": until, "incomplete": recording.incomplete}
+    upto = "" if until is None else f" up to {until:.6g} s"
+    print(f"{out}: {len(recording)} rows{upto}, incomplete: {recording.incomplete}")
     return 0

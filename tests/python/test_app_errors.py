@@ -66,7 +66,6 @@ CASES: dict[str, tuple[list[str], list[str]]] = {
     "image and surface": (["touch", "prose.txt", "--surface", "dots"], ["not both"]),
     "pixel size without image": (["touch", "--pixel-size", "1nm"], ["--pixel-size goes with an IMAGE"]),
     "channel without image": (["touch", "--channel", "Height"], ["--channel goes with an IMAGE"]),
-    "untrusted without image": (["touch", "--untrusted"], ["--untrusted goes with an IMAGE"]),
     "no time": (["touch", "--duration", "0s"], ["--duration 0s", "above 0 s"]),
     "too long": (["touch", "--duration", "1e9s"], ["--duration 1e9s", "600 s"]),
     "bare time": (["touch", "--duration", "20"], ["no unit", "20s"]),

@@ -54,7 +54,7 @@ def curve(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> tuple[Path, list[F
     found = [ForceCurve(tuple(first), {"spring constant": 8.0}, "a.x"), ForceCurve(tuple(second), {"enum": 1}, "a.x")]
     path = tmp_path / "a.x"
     path.write_text("stands for a force curve file")
-    monkeypatch.setattr(curves, "read", lambda file, untrusted: found)
+    monkeypatch.setattr(curves, "read", lambda file: found)
     return path, found
 
 

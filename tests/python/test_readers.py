@@ -18,7 +18,7 @@ pytest.importorskip("SurfaceTopography")
 pytest.importorskip("afmformats")
 
 from nanotouch import curves, formats, images
-from nanotouch._io import readers, transfer, worker
+from nanotouch._io import guard, readers, transfer, worker
 from nanotouch.errors import Error, InvalidValue, ReadError
 
 #: A reader of files that begin with ``FAKE``; what follows says how it behaves.
@@ -174,7 +174,7 @@ def _prose(path: Path) -> Path:
 def test_whatever_a_file_does_to_the_worker_is_a_read_error(
     tmp_path: Path, registered: None, monkeypatch: pytest.MonkeyPatch, what: str, message: str
 ) -> None:
-    monkeypatch.setattr(worker, "LIMITS", worker.Limits(time=0.4))
+    monkeypatch.setattr(guard, "LIMITS", guard.Limits(time=0.4))
     with pytest.raises(ReadError, match=message):
         images.read(fake(tmp_path / what, what), untrusted=True)
     assert images.read(fake(tmp_path / "next", "normal"), untrusted=True).source == "fake"  # the next file is read
@@ -192,8 +192,7 @@ def test_a_worker_that_was_killed_is_started_again(tmp_path: Path) -> None:
     path = synthetic.write_matrix(tmp_path / "image.txt", synthetic.asymmetric(), (3e-6, 4e-6))
     images.read(path, untrusted=True)
     assert worker._current is not None
-    os.kill(worker._current.popen.pid, 9)
-    worker._current.popen.wait()
+    os.kill(worker._current.pid, 9)
     assert images.read(path, untrusted=True).shape == (24, 32)
 
 
@@ -202,7 +201,7 @@ def test_no_worker_is_left_behind(tmp_path: Path) -> None:
     path = synthetic.write_matrix(tmp_path / "image.txt", synthetic.asymmetric(), (3e-6, 4e-6))
     code = (
         "import sys, nanotouch as nt; from nanotouch._io import worker\n"
-        f"nt.images.read({str(path)!r}, untrusted=True); print(worker._current.popen.pid)"
+        f"nt.images.read({str(path)!r}, untrusted=True); print(worker._current.pid)"
     )
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)

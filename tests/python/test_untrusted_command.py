@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``--untrusted`` and ``--calibration`` on the commands that open files."""
+"""``--trusted`` and ``--calibration`` on the commands that open files, which are guarded by default."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_info_says_the_same_with_the_guard(tmp_path: Path, kind: str, capsys: py
         synthetic.write_ibw_curve(path, synthetic.known_curve(n=100))
     else:
         path.write_text("Call me Ishmael.\n")
-    answers = [(main(["info", str(path), *extra]), capsys.readouterr()) for extra in ([], ["--untrusted"])]
+    answers = [(main(["info", str(path), *extra]), capsys.readouterr()) for extra in (["--trusted"], [])]
     assert answers[0] == answers[1]
     assert answers[0][0] == (2 if kind == "neither" else 0)
     assert worker._current is not None
@@ -43,7 +43,7 @@ def test_fit_reads_with_the_guard_and_the_table(tmp_path: Path) -> None:
     table = tmp_path / "table.csv"
     table.write_text("file,spring_constant,sensitivity\n*.ibw,1.6N/m,\n")
     found = []
-    for number, extra in enumerate(([], ["--untrusted"], ["--calibration", str(table)])):
+    for number, extra in enumerate((["--trusted"], [], ["--calibration", str(table)])):
         out = tmp_path / str(number)
         assert main(["fit", str(file), "--model", "jkr", "--radius", "30nm", "--out", str(out), *extra]) == 0
         found.append(json.loads((out / "fit.json").read_text())["pull_off_force_N"])

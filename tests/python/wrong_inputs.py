@@ -238,7 +238,7 @@ touch --scene ''                    | scene is empty
 touch --pixel-size 1nm              | --pixel-size goes with an IMAGE
 touch --z-unit nm                   | --z-unit goes with an IMAGE
 touch --channel Height              | --channel goes with an IMAGE
-touch --untrusted                   | --untrusted goes with an IMAGE
+touch --untrusted                   | --untrusted
 touch prose.txt --surface dots      | not both
 touch prose.txt --pixel-size -1nm   | -
 touch a b                           | unrecognized arguments: b

@@ -10,7 +10,7 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch.errors import Error
+from nanotouch.errors import Error, InvalidValue
 from nanotouch.manipulation import Recorded
 from nanotouch.plasticity import Dent, dents_of
 from nanotouch.touch.record import Recording
@@ -49,6 +49,7 @@ class Reel:
     missed = 0
 
     def __init__(self, recording: Recording) -> None:
+        check_played(recording)
         self.recording = recording = played(recording)
         self.frames = frames_of(recording)
         self.particles = particles_of(recording)
@@ -119,6 +120,16 @@ class Reel:
         return [told_of(dents)] if changed else []
 
 
+def check_played(recording: Recording) -> None:
+    """Refuse what shows nothing."""
+    if not len(recording):
+        raise InvalidValue("the recording has no row")
+    missing = [name for name in ("scene", "events") if name not in recording.metadata]
+    if missing or "radius" not in recording.metadata["scene"].get("tip", {}):
+        what = f"metadata lack {missing[0]!r}" if missing else "scene has no tip radius"
+        raise InvalidValue(f"the recording's {what}: it was not made by a session")
+
+
 def played(recording: Recording) -> Recording:
     """Without what a rewind took back; as it is, with a warning, where that cannot be told."""
     try:
@@ -143,6 +154,7 @@ def _lies(recording: Recording, place: Any) -> bool:
 def surface_of(recording: Recording) -> tuple[nt.Topography, tuple[float, float]]:
     """What is known of the surface, around the path: the heights that the tip has met, along x; a flat where it met
     none. And its lower left corner [m]."""
+    check_played(recording)
     x, y = (recording.columns[name] if name in recording else np.zeros(len(recording)) for name in ("x", "y"))
     height = recording.columns.get("surface_height", np.zeros(len(recording)))
     wide = np.concatenate([np.column_stack([x, y]), _around_particles(recording)])

@@ -18,6 +18,7 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import record
+from nanotouch._io import guard
 from nanotouch.errors import DeviceError, Error, InvalidValue
 
 from nanotouch_app.live import board, cards, hands, parts
@@ -60,7 +61,7 @@ class Window:
         self.picture.stage.origin = np.zeros(2) if origin is None else origin
         if dark:
             self.picture.turn_light()
-        self.reel = None if recording is None else Reel(record.read(recording))
+        self.reel = None if recording is None else Reel(record.read(recording, untrusted=guard.is_there()))
         self.interactor = self.vtk.vtkRenderWindowInteractor()
         self.interactor.SetRenderWindow(self.window)
         style = self.vtk.vtkInteractorStyleUser()
@@ -80,7 +81,7 @@ class Window:
         self.observer: nt.frames.Observer | Reel | None = self.reel
         self.name = ""
         if self.reel is not None and recording is not None:
-            self.picture.hear(world_of(record.read(recording).metadata, Path(recording).name, "recording"))
+            self.picture.hear(world_of(self.reel.recording.metadata, Path(recording).name, "recording"))
             self.picture.reel = self.reel
         self.leads = recording is None and watched is None
         self.remote: Remote | None = None

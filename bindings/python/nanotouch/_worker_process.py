@@ -1,97 +1,164 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The other side of :mod:`nanotouch._io.worker`: imports the readers, and forks a limited child for each file."""
+"""The other side of :mod:`nanotouch._io.worker`: forks a child for each file, which confines itself and reads."""
 
 from __future__ import annotations
 
-import ctypes
+import gc
 import importlib
 import json
 import os
-import resource
-import signal
 import socket
 import sys
-from collections.abc import Callable
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from . import curves, images
-from ._io import transfer
+from ._io import confine, guard, transfer
 from ._io.readers import _registered
+from .curves import asylum_pair
+from .curves.reading import Stream
 from .errors import Error
+from .images.masking import picture_of
 from .images.values import plane_of
 
-_READERS = ("cv2", "h5py", "scipy.io", "tifffile", "igor2.binarywave", "SurfaceTopography.IO", "afmformats")
+_FOR_IMAGES = ("cv2", "h5py", "scipy.io", "tifffile", "igor2.binarywave", "SurfaceTopography.IO")
+_OWN = (".gsf", ".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series", ".mcap", ".part", ".nc", ".topostats")
+_SPAN = 1 << 16  # of a request [byte]
+_BESIDE = 64  # files of the same stem
+
+
+def _recording(file: Path) -> dict[str, Any]:
+    from .touch import _recording_file  # a layer that only this job needs
+
+    return _recording_file.parts_of(file)
+
+
+def _map(file: Path) -> dict[str, Any]:
+    from .maps import dataset  # as above
+
+    return dataset.parts_of(file)
+
+
 _JOBS: dict[str, Callable[..., Any]] = {
     "images.read": images.read,
     "images.plane": plane_of,
     "images.channels": images.channels,
+    "images.planes": images.planes,
+    "images.picture": picture_of,
     "curves.read": curves.read,
+    "curves.thermal": curves.thermal_spectrum,
+    "record.read": _recording,
+    "maps.read": _map,
 }
-_CLONE_NEWUSER, _CLONE_NEWNET = 0x10000000, 0x40000000
 
 
 def main() -> None:
     """Serve the socket whose number is the argument, until it closes."""
-    control = socket.socket(fileno=int(sys.argv[1]))
-    for name in _READERS:
-        try:
-            importlib.import_module(name)
-        except ImportError:  # an extra that is not installed; asking for it will say so
-            continue
-    with suppress(Error):  # a reader that cannot be loaded is named when it is wanted
-        _registered()
-    _leave_network()
+    serve(socket.socket(fileno=int(sys.argv[1])))
+
+
+def serve(control: socket.socket) -> None:
+    """Answer requests; the process has no other purpose."""
+    guard.forget()
+    warnings.simplefilter("ignore")  # nobody would see them
+    gc.disable()  # nothing that was inherited is closed behind our back
+    os.environ["HDF5_PLUGIN_PRELOAD"] = "::"  # no filters from elsewhere
     control.sendall(b"ready\n")
     while True:
-        message, files, _, _ = socket.recv_fds(control, 1 << 16, 1)
+        message, files, _, _ = socket.recv_fds(control, _SPAN, 1)
         if not message:
             return
         while not message.endswith(b"\n"):
-            message += control.recv(1 << 16)
+            message += control.recv(_SPAN)
+        request = json.loads(message)
+        _prepare(request["job"], Path(request["file"]))
         child = os.fork()
         if child == 0:
             control.close()
-            os._exit(_serve(json.loads(message), files[0]))
+            os._exit(_child(request, files[0]))
         os.close(files[0])
         control.sendall(f"{os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])}\n".encode())
 
 
-def _leave_network() -> None:
-    """Into a network of our own, without an interface; where that is forbidden, as a user of our own."""
-    libc = ctypes.CDLL(None)
-    if libc.unshare(_CLONE_NEWNET) != 0:
-        libc.unshare(_CLONE_NEWUSER | _CLONE_NEWNET)
+def _prepare(job: str, file: Path) -> None:
+    """Import once what every child of this kind would import again, going by the name of the file alone."""
+    ending = file.suffix.lower()
+    with suppress(Error):  # a reader that cannot be loaded is named when it is wanted
+        _registered()
+    wanted: tuple[str, ...] = ()
+    if job == "record.read":
+        wanted = ("mcap.stream_reader", "zstandard", "nanotouch.touch.record")
+    elif job == "maps.read":
+        wanted = ("xarray", "h5netcdf", "nanotouch.maps")
+    elif ending not in _OWN:
+        wanted = _FOR_IMAGES if job.startswith("images.") else ("h5py", "afmformats")
+    for name in wanted:
+        with suppress(Exception):  # an extra that is not installed or is broken; asking for it will say so
+            importlib.import_module(name)
 
 
-def _serve(request: dict[str, Any], pipe: int) -> int:
-    _limit(request["limits"])
-    try:
-        answer = transfer.packed(_JOBS[request["job"]](Path(request["file"]), **request["options"]))
-    except Error as error:
-        reader = getattr(error, "reader", "")
-        answer = transfer.packed({"error": str(error), "type": type(error).__name__, "reader": reader})
-    except MemoryError:
-        answer = transfer.packed({"error": f"{request['file']}: asks for more memory than is allowed"})
-    with os.fdopen(pipe, "wb") as stream:
-        for piece in answer:
-            stream.write(piece)
+def _child(request: dict[str, Any], channel: int) -> int:
+    file, folder = Path(request["file"]), request.get("folder")
+    tempfile.tempdir = folder
+    scratch = None if folder is None else (Path(folder), int(request["written"]))
+    confine.confine(request["limits"], _readable(file), scratch)
+    with os.fdopen(channel, "r+b" if request["job"] == "curves.stream" else "wb", buffering=0) as stream:
+        for answer in _answers(request, file, stream):
+            for piece in answer:
+                _write(stream, piece)
     return 0
 
 
-def _limit(limits: dict[str, Any]) -> None:
-    seconds = max(1, round(limits["time"]))
-    for what, value in (
-        (resource.RLIMIT_AS, limits["memory"]),
-        (resource.RLIMIT_FSIZE, 0),
-        (resource.RLIMIT_CORE, 0),
-        (resource.RLIMIT_NOFILE, limits["files"]),
-    ):
-        resource.setrlimit(what, (value, value))
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
-    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.setitimer(signal.ITIMER_REAL, 3.0 * limits["time"])
+def _write(stream: Any, piece: bytes | memoryview) -> None:
+    left = memoryview(piece)
+    while left:
+        left = left[stream.write(left) :]
+
+
+def _readable(file: Path) -> list[Path]:
+    """The file, and those that belong to it: of the same stem, and the other half of a pair."""
+    beside = [one for one in os.listdir(file.parent) if Path(one).stem == file.stem]
+    return [file, *(file.parent / one for one in beside[:_BESIDE]), *asylum_pair.files_of(file)]
+
+
+def _answers(request: dict[str, Any], file: Path, stream: Any) -> Iterator[list[bytes | memoryview]]:
+    try:
+        if request["job"] == "curves.stream":
+            yield from _streamed(file, request["options"], stream)
+        else:
+            yield transfer.packed(_JOBS[request["job"]](file, **request["options"]))
+    except Error as error:
+        reader = getattr(error, "reader", "")
+        yield transfer.packed({"error": str(error), "type": type(error).__name__, "reader": reader})
+    except MemoryError:
+        yield transfer.packed({"error": f"{file}: asks for more memory than is allowed"})
+    except Exception as error:
+        said = " ".join(str(error).split())[:200] or type(error).__name__
+        yield transfer.packed({"error": f"{file}: it cannot be read: {said}"})
+
+
+def _streamed(file: Path, options: dict[str, Any], stream: Any) -> Iterator[list[bytes | memoryview]]:
+    """First where each curve was taken, then the curves that are asked for, a line ``start stop`` each."""
+    found = Stream(file, curves.Calibration(**options))
+    yield transfer.packed({"places": [found.place(number) for number in range(len(found))]})
+    line = b""
+    while byte := stream.read(1):
+        line += byte
+        if byte == b"\n":
+            start, stop = map(int, line.split())
+            yield transfer.packed([_or_error(found, number) for number in range(start, stop)])
+            line = b""
+
+
+def _or_error(found: Stream, number: int) -> Any:
+    try:
+        return found[number]
+    except Error as error:
+        return {"error": str(error), "type": type(error).__name__, "reader": getattr(error, "reader", "")}
 
 
 if __name__ == "__main__":

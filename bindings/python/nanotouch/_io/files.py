@@ -15,12 +15,18 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
+from nanotouch._io.words import printable
 from nanotouch.errors import Error, ReadError, require
 
-#: Largest file opened [byte]: the largest single AFM files (force maps) are a few hundred megabytes.
-MAX_FILE_SIZE = 1 << 30
+#: Largest file opened [byte]: the largest single AFM files (force maps) are some gigabytes.
+MAX_FILE_SIZE = 1 << 34
 MAX_TOML_SIZE = 1 << 20  # some 20 000 lines [byte]
-MAX_UNPACKED = 1 << 31  # of all that a container says it holds [byte]
+MAX_UNPACKED = 1 << 31  # of all that an HDF5 file says it holds, or twice its size [byte]
+MAX_MEMBER = 1 << 30  # of a member of a zip archive, unpacked [byte]
+FREE, RATIO = (
+    1 << 26,
+    50,
+)  # all its members: so many bytes [byte], and so many for each packed one; real ones have 2 .. 5
 # they log what they raise as well
 _TALKATIVE = ("tifffile", "afmformats.formats", "igor2.binarywave", "igor2.packed", "igor2.struct")
 _HDF5_ENDINGS = (".h5", ".hdf5", ".nc", ".nhf", ".h5-jpk", ".topostats")
@@ -113,7 +119,7 @@ def refuse_traps(file: Path, head: bytes) -> None:
     """Refuse containers that unpack to too much, or make the reader open other files, or loop."""
     if head.startswith(b"PK\3\4"):
         with guarded(file, "zipfile"), zipfile.ZipFile(file) as archive:
-            check_unpacked(file, sum(item.file_size for item in archive.infolist()))
+            check_archive(file, archive)
     elif head[:2] in (b"\5\0", b"\0\5"):
         _check_igor(file, head)
     elif head.startswith(b"\x89HDF") or file.suffix.lower() in _HDF5_ENDINGS:
@@ -156,10 +162,21 @@ def _refuse_hdf5_traps(file: Path) -> None:
                         if node.external or node.is_virtual:
                             raise ReadError(f"{file}: keeps {name!r} in another file; such HDF5 files are refused")
                         unpacked += int(node.nbytes) if node.shape else 0
-        check_unpacked(file, unpacked)
+        _check_unpacked(file, unpacked, max(MAX_UNPACKED, 2 * file.stat().st_size))
 
 
-def check_unpacked(file: Path, size: int) -> None:
-    """Refuse a container that says it holds more than is read."""
-    if size > MAX_UNPACKED:
-        raise ReadError(f"{file}: unpacks to {size / 2**20:.0f} MiB; up to {MAX_UNPACKED >> 20} MiB are read")
+def check_archive(file: Path, archive: zipfile.ZipFile) -> None:
+    """Refuse an archive whose members, or one of them, unpack to more than is read. None can be read further than it
+    says here."""
+    members = archive.infolist()
+    _check_unpacked(file, sum(item.file_size for item in members), FREE + RATIO * file.stat().st_size)
+    for item in members:
+        allowed = min(MAX_MEMBER, FREE + RATIO * item.compress_size)
+        if not 0 <= item.file_size <= allowed:
+            what = f"{printable(item.filename)[:80]!r} in it unpacks to {item.file_size / 2**20:.0f} MiB"
+            raise ReadError(f"{file}: {what}; up to {allowed >> 20} MiB are read")
+
+
+def _check_unpacked(file: Path, size: int, allowed: int) -> None:
+    if size > allowed:
+        raise ReadError(f"{file}: unpacks to {size / 2**20:.0f} MiB; up to {allowed >> 20} MiB are read")

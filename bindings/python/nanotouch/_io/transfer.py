@@ -19,8 +19,8 @@ import numpy as np
 from nanotouch.errors import Error
 
 MAX_JSON = 1 << 28  # of 65536 curves with what their file says of them: 1 << 27 [byte]
-MAX_ARRAYS = 1 << 30  # of all arrays of an answer [byte]
-_DTYPES = ("<f8", "|b1")
+MAX_ARRAYS = 1 << 30  # of all arrays of an answer, where nobody says how many may come [byte]
+_DTYPES = ("|b1", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<i8", "<u8", "<f4", "<f8")
 _Arrays = dict[tuple[int, tuple[int, ...], str], tuple[int, np.ndarray[Any, Any]]]  # by where they lie
 
 
@@ -39,7 +39,10 @@ def packed(value: Any) -> list[bytes | memoryview]:
 
 def _flattened(value: Any, arrays: _Arrays) -> Any:
     if isinstance(value, np.ndarray):
-        flat = np.ascontiguousarray(value)
+        if value.dtype.kind not in "biuf":
+            return value.astype(str).tolist()
+        flat = np.ascontiguousarray(value).reshape(value.shape)
+        flat = flat.astype(flat.dtype.newbyteorder("<"), copy=False)
         place = (flat.__array_interface__["data"][0], flat.shape, flat.dtype.str)
         number, _ = arrays.setdefault(place, (len(arrays), flat))
         return {"array": number}
@@ -58,7 +61,7 @@ def _flattened(value: Any, arrays: _Arrays) -> Any:
     return str(value)  # paths, dates
 
 
-def unpacked(read: Callable[[int], bytes], file: Path, types: Sequence[type]) -> Any:
+def unpacked(read: Callable[[int], bytes], file: Path, types: Sequence[type], most: int = MAX_ARRAYS) -> Any:
     """The value, made of these types, of a frame whose bytes `read` gives; :class:`BadAnswer` if it is none within the
     limits."""
     (length,) = struct.unpack("<Q", read(8))
@@ -71,7 +74,7 @@ def unpacked(read: Callable[[int], bytes], file: Path, types: Sequence[type]) ->
             raise ValueError("a negative size")
         counts = [int(np.prod(shape, dtype=object)) if shape else 1 for _, shape in sizes]
         total = sum(dtype.itemsize * count for (dtype, _), count in zip(sizes, counts, strict=True))
-        if total > MAX_ARRAYS:
+        if total > most:
             raise ValueError(f"arrays of {total} bytes")
         arrays = [
             np.frombuffer(read(dtype.itemsize * count), dtype).reshape(shape)

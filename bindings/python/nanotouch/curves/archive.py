@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from .._io.files import check_archive
+from .._io.words import printable
 from ..errors import ReadError
 from .curve import ForceCurve
 
@@ -28,18 +30,19 @@ def recognises(file: Path, head: bytes) -> bool:
 
 def read(file: Path, read_one: Callable[[Path], list[ForceCurve]]) -> list[ForceCurve]:
     """The curves of all its files, in the order of their names; ReadError if one of them is none."""
+    found: list[ForceCurve] = []
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(file) as archive:
+        check_archive(file, archive)
         names = _names(archive)
         if len(names) > _MOST:
             raise ReadError(f"{file}: {len(names)} files; archives of up to {_MOST} are read")
-        unpacked = []
-        for number, name in enumerate(names):  # the names inside decide nothing about where they go
-            place = Path(folder, str(number))
-            place.mkdir()
-            unpacked.append(place / Path(name).name)
-            unpacked[-1].write_bytes(archive.read(name))
-        found: list[ForceCurve] = []
-        for place in unpacked:
+        places = [Path(folder, str(number), Path(name).name) for number, name in enumerate(names)]
+        for name, place in zip(names, places, strict=True):  # the names inside decide nothing about where they go
+            if name.lower().endswith(".zip"):
+                raise ReadError(f"{file}: {printable(place.name)} in it is an archive: unpack it first")
+            place.parent.mkdir()
+            place.write_bytes(archive.read(name))
+        for place in places:
             try:
                 curves = read_one(place)
             except ReadError as error:
@@ -49,6 +52,7 @@ def read(file: Path, read_one: Callable[[Path], list[ForceCurve]]) -> list[Force
                 replace(curve, meta=dict(curve.meta) | {"path": file, "enum": len(found) + number})
                 for number, curve in enumerate(curves)
             ]
+            place.unlink()
     return found
 
 

@@ -39,6 +39,12 @@ def holds_heights(file: Path) -> bool:
     return half is not None and file == half[1]
 
 
+def files_of(file: Path) -> list[Path]:
+    """Both halves, if it is one of a pair."""
+    half = _half(file) if file.suffix.lower() == ".ibw" else None
+    return [] if half is None else [half[0], half[1]]
+
+
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """The one curve; ReadError for the half that holds the heights, which would make every curve count twice."""
     half = _half(file)

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._io.files import check_unpacked
+from .._io.files import check_archive
 from .._io.words import counted, printable
 from ..errors import ReadError
 from .calibration import Calibration
@@ -83,7 +83,7 @@ class Archive:
         self._given = (calibration or Calibration()).given
         self._zip = zipfile.ZipFile(file)
         try:
-            check_unpacked(file, sum(item.file_size for item in self._zip.infolist()))
+            check_archive(file, self._zip)
             self._names = set(self._zip.namelist())
             self._general = self._properties("header.properties")
             shared = "shared-data/header.properties"

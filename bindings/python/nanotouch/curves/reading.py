@@ -7,9 +7,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .._io import worker
+from .._io import guard, worker
 from .._io.files import checked_path, guarded, refuse_traps
 from .._io.readers import head_of, registered_for
+from .._io.stream import Guarded
 from .._io.words import printable
 from ..errors import ReadError
 from ..formats import refusal
@@ -26,7 +27,7 @@ def read(
     spring_constant: float | None = None,
     sensitivity: float | None = None,
     calibration: CalibrationTable | str | PathLike[str] | None = None,
-    untrusted: bool = False,
+    untrusted: bool | None = None,
 ) -> list[ForceCurve]:
     """Read every curve of a file in one of the formats of :mod:`nanotouch.formats`.
 
@@ -45,8 +46,9 @@ def read(
         NT-MDT's text, whose detector reads amperes, in m/A, 0.1 .. 1e5.
     calibration : CalibrationTable or path, optional
         The same for many files, by name; the two arguments above count more.
-    untrusted : bool
-        Open the file in a worker process with limits on memory, time and files (Linux only), for files from elsewhere.
+    untrusted : bool, optional
+        True: open the file in a confined process (Linux only), for files from elsewhere (docs/security.md). By default
+        the ``nanotouch`` command does so, Python does not.
 
     Returns
     -------
@@ -66,7 +68,7 @@ def read(
     given = Calibration(spring_constant, sensitivity)
     file = checked_path(path)
     given = _over_table(given, calibration, file)
-    if untrusted:
+    if guard.wanted(untrusted):
         options = {"spring_constant": given.spring_constant, "sensitivity": given.sensitivity}
         read_there = worker.ask("curves.read", file, options, list[ForceCurve], [Segment])
         return [_rechecked(curve, file) for curve in read_there]
@@ -108,12 +110,32 @@ class Stream:
             return self._archive.place(number)
 
 
+class GuardedStream(Stream):
+    """The same, read by a confined process."""
+
+    def __init__(self, file: Path, given: Calibration) -> None:
+        self.file = file
+        options = {"spring_constant": given.spring_constant, "sensitivity": given.sensitivity}
+        self._there = Guarded(file, options, (ForceCurve, Segment))
+
+    def __len__(self) -> int:
+        return len(self._there)
+
+    def __getitem__(self, number: int) -> ForceCurve:
+        return _rechecked(self._there[number], self.file)
+
+    def place(self, number: int) -> dict[str, Any]:
+        """Where a curve was taken."""
+        return self._there.place(number)
+
+
 def stream(
     path: str | PathLike[str],
     *,
     spring_constant: float | None = None,
     sensitivity: float | None = None,
     calibration: CalibrationTable | str | PathLike[str] | None = None,
+    untrusted: bool | None = None,
 ) -> Stream | None:
     """The curves of a file one at a time, for maps larger than the memory; None where it can only be read whole.
 
@@ -122,7 +144,8 @@ def stream(
     file = checked_path(path)
     if file.suffix.lower() not in jpk.ENDINGS or registered_for(file, head_of(file), "curves") is not None:
         return None
-    found = Stream(file, _over_table(Calibration(spring_constant, sensitivity), calibration, file))
+    given = _over_table(Calibration(spring_constant, sensitivity), calibration, file)
+    found = GuardedStream(file, given) if guard.wanted(untrusted) else Stream(file, given)
     if not len(found):
         raise ReadError(f"{file}: holds no force curve")
     return found

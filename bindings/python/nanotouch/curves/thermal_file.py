@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from .._io import guard, worker
 from .._io.files import checked_path, guarded
 from ..errors import InvalidValue, ReadError
 from ..units import parse_quantity
@@ -44,13 +45,15 @@ class ThermalSpectrum:
     facts: Mapping[str, str]
 
 
-def thermal_spectrum(path: str | PathLike[str]) -> ThermalSpectrum:
+def thermal_spectrum(path: str | PathLike[str], *, untrusted: bool | None = None) -> ThermalSpectrum:
     """Read a thermal spectrum, for :func:`~nanotouch.curves.thermal_tune`.
 
     Parameters
     ----------
     path : str or path
         JPK's ``.tnd``.
+    untrusted : bool, optional
+        As in :func:`nanotouch.curves.read`.
 
     Raises
     ------
@@ -58,6 +61,8 @@ def thermal_spectrum(path: str | PathLike[str]) -> ThermalSpectrum:
         If it is none, or damaged.
     """
     file = checked_path(path)
+    if guard.wanted(untrusted):
+        return worker.ask("curves.thermal", file, {}, ThermalSpectrum)
     with guarded(file, NAME):
         return _read(file)
 

@@ -7,12 +7,15 @@ True is masked, as in ``level(mask=...)`` and ``roughness(mask=...)``.
 from __future__ import annotations
 
 from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats, check_between
-from .._io.files import MAX_FILE_SIZE, checked_path, guarded
+from .._io import guard, worker
+from .._io.files import checked_path, guarded
 from ..errors import InvalidValue, ReadError, require
 from ._robust import MAD
 from .particles import GrainTable
@@ -40,7 +43,9 @@ def mask_above(topography: Topography, height: float | None = None, *, below: bo
     return np.asarray((-z if below else z) > height)
 
 
-def mask_image(path: str | PathLike[str], topography: Topography) -> NDArray[np.bool_]:
+def mask_image(
+    path: str | PathLike[str], topography: Topography, *, untrusted: bool | None = None
+) -> NDArray[np.bool_]:
     """True where a picture (PNG, TIFF) of as many pixels is white, as drawn over the image; row 0 is its top.
 
     A pixel is white where it is brighter than half.
@@ -53,17 +58,22 @@ def mask_image(path: str | PathLike[str], topography: Topography) -> NDArray[np.
         If it has other pixels than the image.
     """
     file = checked_path(path)
-    cv2 = require("cv2", "images")
-    if file.stat().st_size > MAX_FILE_SIZE:
-        raise ReadError(f"{file}: too large for a mask")
-    with guarded(file, "OpenCV"):
-        picture = cv2.imread(fspath(file), cv2.IMREAD_GRAYSCALE)
-    if picture is None:
-        raise ReadError(f"{file}: not a picture (PNG, TIFF) that OpenCV reads")
+    is_guarded = guard.wanted(untrusted)
+    picture = worker.ask("images.picture", file, {}, np.ndarray) if is_guarded else picture_of(file)
     if picture.shape != topography.shape:
         (ny, nx), (my, mx) = topography.shape, picture.shape
         raise InvalidValue(f"mask {file.name}: {mx} x {my} pixels, expected those of the image, {nx} x {ny}")
     return np.asarray(picture[::-1] > 127)
+
+
+def picture_of(file: Path) -> NDArray[Any]:
+    """Grey values, row 0 at the top."""
+    cv2 = require("cv2", "images")
+    with guarded(file, "OpenCV"):
+        picture: NDArray[Any] | None = cv2.imread(fspath(file), cv2.IMREAD_GRAYSCALE)
+    if picture is None:
+        raise ReadError(f"{file}: not a picture (PNG, TIFF) that OpenCV reads")
+    return picture
 
 
 def mask_grains(table: GrainTable, numbers: list[int] | None = None) -> NDArray[np.bool_]:

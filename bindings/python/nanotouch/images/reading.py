@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .._io import worker
+from .._io import guard, worker
 from .._io.files import checked_path, guarded, refuse_traps
 from .._io.readers import head_of, registered_for
 from .._io.words import printable
@@ -22,14 +22,14 @@ from .checks import LENGTHS, check_scale, check_shape, filled, unusual
 from .topography import Topography
 
 
-def channels(path: str | PathLike[str], *, untrusted: bool = False) -> list[Channel]:
+def channels(path: str | PathLike[str], *, untrusted: bool | None = None) -> list[Channel]:
     """List the two-dimensional channels of an image file.
 
     Parameters
     ----------
     path : str or path
         The image file.
-    untrusted : bool
+    untrusted : bool, optional
         Open it in a guarded worker process, see :func:`read`.
 
     Raises
@@ -38,7 +38,7 @@ def channels(path: str | PathLike[str], *, untrusted: bool = False) -> list[Chan
         If it is not an AFM image.
     """
     file = checked_path(path)
-    if untrusted:
+    if guard.wanted(untrusted):
         return worker.ask("images.channels", file, {}, list[Channel])
     name, reader = reader_of(file)
     with guarded(file, name):
@@ -52,7 +52,7 @@ def read(
     *,
     pixel_size: float | tuple[float, float] | None = None,
     z_unit: str | None = None,
-    untrusted: bool = False,
+    untrusted: bool | None = None,
 ) -> Topography:
     """Read one channel of an AFM image, in any format of :mod:`nanotouch.formats`, chosen by content.
 
@@ -67,8 +67,9 @@ def read(
         ``(dy, dx)`` [m], 1e-12 .. 1e-3, in place of what the file states, or for files that state nothing.
     z_unit : str, optional
         Unit of the heights (``"m"``, ``"mm"``, ``"um"``, ``"nm"``, ``"A"``, ``"pm"``) for files that state none.
-    untrusted : bool
-        Open the file in a worker process with limits on memory, time and files (Linux only), for files from elsewhere.
+    untrusted : bool, optional
+        True: open the file in a confined process (Linux only), for files from elsewhere (docs/security.md). By default
+        the ``nanotouch`` command does so, Python does not.
 
     Returns
     -------
@@ -88,7 +89,7 @@ def read(
     given_pixel = checked_pixel_size(pixel_size)
     if z_unit is not None and z_unit not in LENGTHS:
         raise InvalidValue(f"z_unit: {z_unit!r}, expected one of {', '.join(LENGTHS)}")
-    if untrusted:
+    if guard.wanted(untrusted):
         options: dict[str, Any] = {"channel": channel, "pixel_size": given_pixel, "z_unit": z_unit}
         topography = worker.ask("images.read", file, options, Topography)
         with guarded(file, topography.source):

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
-from .._io import worker
+from .._io import guard, worker
 from .._io.digest import file_digest
 from .._io.files import checked_path, guarded
 from .._io.words import printable
@@ -119,7 +119,7 @@ def read_values(
     unit: str | None = None,
     pixel_size: float | tuple[float, float] | None = None,
     fill_by: Fill | None = None,
-    untrusted: bool = False,
+    untrusted: bool | None = None,
 ) -> ValueMap:
     """Read a quantity of each pixel from a channel of an image, or from a variable of a map.nc (`nanotouch map`).
 
@@ -137,7 +137,7 @@ def read_values(
         ``(dy, dx)`` [m] in place of what the file states.
     fill_by : {"neighbours", "median"}, optional
         What pixels without a value get; without it they are refused.
-    untrusted : bool
+    untrusted : bool, optional
         Open it in a guarded worker process, see :func:`nanotouch.images.read`.
     """
     if quantity not in QUANTITIES:
@@ -146,7 +146,11 @@ def read_values(
         raise InvalidValue(f"fill_by {fill_by!r}: valid are {', '.join(get_args(Fill))}")
     file = checked_path(path)
     given = checked_pixel_size(pixel_size)
-    plane = worker.ask("images.plane", file, {"channel": channel}, Plane) if untrusted else plane_of(file, channel)
+    plane = (
+        worker.ask("images.plane", file, {"channel": channel}, Plane)
+        if guard.wanted(untrusted)
+        else plane_of(file, channel)
+    )
     with guarded(file, plane.source):
         return _checked(plane, file, quantity, unit, given, fill_by)
 

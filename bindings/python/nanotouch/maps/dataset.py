@@ -5,12 +5,16 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .._io import guard, worker
+from .._io.files import checked_path, guarded, refuse_traps
+from .._io.readers import head_of
 from .._io.writing import replacing
 from ..errors import ReadError, require
 from .block import MEASURED, PLAIN, flag_names, status_names
@@ -78,15 +82,65 @@ def write(data: Any, path: str | os.PathLike[str]) -> Path:
     return Path(path)
 
 
-def read(path: str | os.PathLike[str]) -> Any:
-    """What :func:`write` wrote, in memory."""
+def read(path: str | os.PathLike[str], *, untrusted: bool | None = None) -> Any:
+    """What :func:`write` wrote, in memory.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    untrusted : bool, optional
+        True: read it in a confined process (Linux only). By default the ``nanotouch`` command does so, Python does not.
+    """
+    xarray = require("xarray", "maps")
+    file = Path(path)
+    if not guard.wanted(untrusted):
+        return _opened(file)
+    parts = worker.ask("maps.read", file, {}, dict)
+    with guarded(file, "worker"):
+        data = xarray.Dataset(*({name: _variable(xarray, one) for name, one in parts[kind].items()}
+                                for kind in ("variables", "coordinates")))  # fmt: skip
+        data.attrs.update({key: _attribute(value) for key, value in parts["attributes"].items()})
+    return data
+
+
+def parts_of(file: Path) -> dict[str, Any]:
+    """The same as plain data."""
+    data = _opened(file)
+    return {
+        "variables": {str(name): _plain(one) for name, one in data.data_vars.items()},
+        "coordinates": {str(name): _plain(one) for name, one in data.coords.items()},
+        "attributes": {str(key): value for key, value in data.attrs.items()},
+    }
+
+
+def _opened(file: Path) -> Any:
     xarray = require("xarray", "maps")
     require("h5netcdf", "maps")
+    checked_path(file)
+    refuse_traps(file, head_of(file))
     try:
-        with xarray.open_dataset(path, engine="h5netcdf") as data:
+        with guarded(file, "h5netcdf"), xarray.open_dataset(file, engine="h5netcdf") as data:
             return data.load()
-    except (OSError, ValueError) as error:
-        raise ReadError(f"{path}: not a map that can be read: {error}") from error
+    except ReadError as error:
+        raise ReadError(f"{file}: not a map that can be read: {error}", error.reader) from error
+
+
+def _plain(one: Any) -> dict[str, Any]:
+    return {"dims": list(map(str, one.dims)), "shape": list(one.shape), "values": np.asarray(one.values),
+            "attributes": {str(key): value for key, value in one.attrs.items()}}  # fmt: skip
+
+
+def _variable(xarray: Any, told: Mapping[str, Any]) -> Any:
+    values = told["values"]
+    if isinstance(values, list):  # texts
+        values = np.array(values, object).reshape([int(n) for n in told["shape"]])
+    return xarray.Variable(told["dims"], values, {key: _attribute(one) for key, one in told["attributes"].items()})
+
+
+def _attribute(value: Any) -> Any:
+    """Plain data alone."""
+    return value if isinstance(value, str | int | float | np.ndarray | list) else str(value)
 
 
 def determined(data: Any, name: str) -> NDArray[np.bool_]:

@@ -42,7 +42,7 @@ def fit(
     spring_constant: float | None = None,
     sensitivity: float | None = None,
     calibration: CalibrationTable | str | os.PathLike[str] | None = None,
-    untrusted: bool = False,
+    untrusted: bool | None = None,
     cluster: Any = None,
     resume: str | os.PathLike[str] | None = None,
     threads: int = 0,

@@ -255,8 +255,7 @@ def volume_of(source: Any, z: Any, deflection: bool, reading: Mapping[str, Any])
         return source
     if isinstance(source, str | os.PathLike):
         path = Path(source)
-        known = {key: value for key, value in reading.items() if key != "untrusted"}
-        found = None if reading["untrusted"] else stream(path, **known)
+        found = stream(path, **reading)
         return CurveVolume.of(read(path, **reading) if found is None else found, printable(path.name), path)
     if isinstance(source, Sequence) and source and isinstance(source[0], ForceCurve):
         return CurveVolume.of(source, source[0].name)

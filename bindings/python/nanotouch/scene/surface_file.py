@@ -59,7 +59,7 @@ class SurfaceFile:
         What pixels without a value get; without it they are refused.
     digests : mapping
         SHA-256 of the files by their names; where given, another content is refused.
-    untrusted : bool
+    untrusted : bool, optional
         Open them in a guarded worker process.
     """
 
@@ -73,7 +73,7 @@ class SurfaceFile:
     units: Mapping[str, str] = field(default_factory=dict)
     fill_by: Fill | None = None
     digests: Mapping[str, str] = field(default_factory=dict)
-    untrusted: bool = False
+    untrusted: bool | None = None
 
     def __post_init__(self) -> None:
         for name in (*self.properties, *self.units):

@@ -16,7 +16,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.scene import Rig, Settings
 from nanotouch.scene.plan import Plan
 from nanotouch.touch._calm import CLEARLY_FELT, RINGING_MOST, Calm, calm
-from nanotouch.touch._path import Mode, core_mode
+from nanotouch.touch._path import MODES, Mode, core_mode
 from nanotouch.touch._response import Response, passive_up_to, response
 from nanotouch.touch.record import Recording
 
@@ -271,6 +271,10 @@ def z_width(recording: Recording) -> Width:
 def _described(recording: Recording) -> tuple[Rig, Settings, Settings | None]:
     """What it was recorded with, and the settings that its law amounts to, None where that is not known."""
     metadata = recording.metadata
+    if not len(recording):
+        raise InvalidValue("the recording has no row")
+    if metadata.get("mode", "point") not in MODES:
+        raise InvalidValue(f"the recording's metadata: mode {metadata['mode']!r}: valid are {', '.join(MODES)}")
     try:
         rig, settings, control = Rig(**metadata["rig"]), Settings(**metadata["settings"]), metadata["control"]
         if control == "own":

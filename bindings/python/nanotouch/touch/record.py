@@ -10,24 +10,24 @@ from __future__ import annotations
 import json
 import math
 import os
-import struct
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nanotouch._io import html
+from nanotouch._io import guard, html, worker
 from nanotouch._io.files import checked_path
 from nanotouch._io.writing import BLOCK_ROWS
 from nanotouch._io.writing import replacing as replacing
 from nanotouch._io.writing import write_csv as write_csv
 from nanotouch.errors import Error, InvalidValue, ReadError, require
 from nanotouch.plasticity import Dent, dents_of
+from nanotouch.touch import _recording_file
 from nanotouch.touch._control import ControlLaw
-from nanotouch.touch._recorder import ENCODING, INCOMPLETE, recovered_name
+from nanotouch.touch._recorder import INCOMPLETE, recovered_name
 from nanotouch.touch._recorder import Metadata as Metadata
 from nanotouch.touch._recorder import Writer as Writer
 from nanotouch.touch.columns import COLUMNS as COLUMNS
@@ -212,36 +212,31 @@ def is_recording(path: str | os.PathLike[str]) -> bool:
         return file.read(len(MCAP_MAGIC)) == MCAP_MAGIC
 
 
-def read(path: str | os.PathLike[str]) -> Recording:
+def read(path: str | os.PathLike[str], *, untrusted: bool | None = None) -> Recording:
     """Read a recording. A damaged or truncated file gives the whole blocks before the damage, with a warning, and is
-    marked as incomplete."""
-    reader = require("mcap.stream_reader", "record")
-    names: list[str] | None = None
-    metadata: dict[str, Any] = {}
-    blocks: list[bytes] = []
-    damage = ""
-    try:
-        with open(path, "rb") as file:
-            limit = os.fstat(file.fileno()).st_size
-            records = reader.StreamReader(file, validate_crcs=True, record_size_limit=limit).records
-            for record in _until_damage(records, file):
-                if isinstance(record, str):
-                    damage = record
-                elif type(record).__name__ == "Metadata" and record.name == "nanotouch":
-                    metadata |= {key: json.loads(value) for key, value in record.metadata.items()}
-                elif type(record).__name__ == "Schema" and record.encoding == ENCODING:
-                    names = _schema_names(record.data)
-                elif type(record).__name__ == "Message":
-                    blocks.append(record.data)
-    except OSError as error:
-        raise ReadError(f"cannot read {path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise ReadError(f"{path} is not a recording of nanotouch: {error}") from error
-    if names is None:
-        raise ReadError(f"{path} is not a recording of nanotouch: {damage or f'it has no schema {ENCODING!r}'}")
+    marked as incomplete.
+
+    Parameters
+    ----------
+    path : path
+        The MCAP file.
+    untrusted : bool, optional
+        True: read it in a confined process (Linux only). By default the ``nanotouch`` command does so, Python does not.
+    """
+    file = Path(path)
+    if guard.wanted(untrusted):
+        parts = worker.ask("record.read", file, {}, dict)
+        if not all(isinstance(parts.get(key), dict) for key in ("columns", "metadata")):
+            raise ReadError(f"{path}: the worker's answer is not what was asked for", "worker")
+    else:
+        parts = _recording_file.parts_of(file)
+    metadata, damage = dict(parts["metadata"]), str(parts.get("damage", ""))
     if damage:
         metadata.setdefault(INCOMPLETE, damage)
-    recording = Recording(_columns(path, names, blocks), metadata)
+    try:
+        recording = Recording(parts["columns"], metadata)
+    except InvalidValue as error:
+        raise ReadError(f"{path} is not a recording of nanotouch: {error}") from error
     if damage:
         warnings.warn(f"{path} is damaged ({damage}); {len(recording)} rows before the damage were read", stacklevel=2)
     return recording
@@ -283,43 +278,3 @@ def _ends(values: NDArray[Any]) -> tuple[str, str]:
 def _heading(name: str) -> str:
     unit = COLUMNS[name].unit
     return f"{name} [{unit}]" if unit else name
-
-
-def _until_damage(records: Iterator[Any], file: IO[bytes]) -> Iterator[Any]:
-    """The records of an MCAP file up to its end or to the first damage, which comes last as text."""
-    exceptions = require("mcap.exceptions", "record")
-    zstandard = require("zstandard", "record")
-    try:
-        yield from records
-    except exceptions.EndOfFile:
-        yield "it ends early" if file.tell() else "it is empty"
-    except (exceptions.McapError, zstandard.ZstdError, ValueError, struct.error) as error:
-        yield str(error) or type(error).__name__
-
-
-def _schema_names(data: bytes) -> list[str]:
-    """The names of the columns a schema lists, which must be of the type and unit of COLUMNS."""
-    names = []
-    for entry in json.loads(data)["columns"]:
-        known = COLUMNS.get(entry["name"])
-        if known is None or (known.dtype, known.unit) != (entry["dtype"], entry["unit"]):
-            raise ValueError(f"this version does not know the column {entry['name']!r} [{entry['unit']}]")
-        names.append(entry["name"])
-    return names
-
-
-def _columns(path: str | os.PathLike[str], names: Sequence[str], blocks: Sequence[bytes]) -> dict[str, NDArray[Any]]:
-    """Take the blocks apart and join each column."""
-    types = [np.dtype(COLUMNS[name].dtype) for name in names]
-    row = sum(kind.itemsize for kind in types)
-    wrong = next((len(block) for block in blocks if len(block) % row), None)
-    if wrong is not None:
-        raise ReadError(f"{path}: a block has {wrong} bytes, which is no multiple of the {row} bytes of a row")
-    rows = [len(block) // row for block in blocks]
-    columns = {}
-    offset = 0  # bytes of the columns before this one, per row
-    for name, kind in zip(names, types, strict=True):
-        pieces = [np.frombuffer(b, kind, n, offset * n) for b, n in zip(blocks, rows, strict=True)]
-        columns[name] = np.concatenate([np.empty(0, kind), *pieces])
-        offset += kind.itemsize
-    return columns
