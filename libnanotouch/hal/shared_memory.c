@@ -29,6 +29,7 @@ nt_status nt_shared_make_name(char *full, const char *kind, const char *name)
 
 #if defined(__linux__) && ATOMIC_LLONG_LOCK_FREE == 2
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -69,6 +70,35 @@ static nt_status open_locked(const char *full, int flags, int *file)
     else
         close(opened);
     return status;
+}
+
+/* Removes one object if its owner has ended: nobody else ever holds the lock of a whole one. */
+static void remove_left_over(const char *entry)
+{
+    struct stat found;
+    char full[NT_SHARED_NAME_SIZE];
+    snprintf(full, sizeof full, NAME_OF_SYSTEM "%s", entry);
+    const int opened = shm_open(full, O_RDONLY | O_NONBLOCK, 0);
+    if (opened < 0)
+        return;
+    if (fstat(opened, &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == geteuid() && found.st_size > 0 &&
+        flock(opened, LOCK_SH | LOCK_NB) == 0 && fstat(opened, &found) == 0 && found.st_nlink > 0)
+        shm_unlink(full);
+    close(opened);
+}
+
+/* What killed programs of this user have left, under whatever name: else each kill would cost its memory until the
+ * machine is started again. */
+static void remove_left_overs(void)
+{
+    static const char ours[] = "nanotouch.";
+    DIR *folder = opendir("/dev/shm");
+    if (!folder)
+        return;
+    for (const struct dirent *entry = readdir(folder); entry; entry = readdir(folder))
+        if (strncmp(entry->d_name, ours, sizeof ours - 1) == 0 && strlen(entry->d_name) + 2 <= NT_SHARED_NAME_SIZE)
+            remove_left_over(entry->d_name);
+    closedir(folder);
 }
 
 /* A new, empty, locked object. What is left over is removed, never shortened: others may have it mapped. */
@@ -118,8 +148,10 @@ nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name
     if (!name)
         return map(shared, PROT_READ | PROT_WRITE);
     nt_status status = nt_shared_make_name(shared->name, kind, name);
-    if (status == NT_OK)
+    if (status == NT_OK) {
+        remove_left_overs();
         status = open_new(shared->name, &shared->file);
+    }
     if (status != NT_OK)
         return status;
     const int error = posix_fallocate(shared->file, 0, (off_t)size); /* a full system says so here, not in the loop */

@@ -24,7 +24,8 @@ typedef struct nt_shared {
 
 /* All 0 at first. kind: "frames", "commands", "mailbox" or "claim", part of the system's name for it. name NULL:
  * private memory. NT_E_STATE if a living owner, or another user, has the name; NT_E_RANGE for a bad name;
- * NT_E_NO_MEMORY; NT_E_DEVICE if the system refuses otherwise. After a failure nothing needs to be closed. */
+ * NT_E_NO_MEMORY; NT_E_DEVICE if the system refuses otherwise. After a failure nothing needs to be closed. What killed
+ * programs of this user have left is removed, under whatever name. */
 nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size);
 /* Is this the process that made it? Asks the system. */
 int nt_shared_is_own(const nt_shared *shared);

@@ -133,8 +133,11 @@ def test_only_the_right_key_opens_and_operates_once(desk: BrowserDesk) -> None:
                         {"do": "change", "what": "scene", "field": "tip.radius", "value": 1e308}):  # fmt: skip
             await again.send_json(hostile)
             await heard(again, "refused")
-        await again.send_str("[" * 4000)
-        await heard(again, "refused")
+        for odd in ("[" * 4000, '{"do": "wheel", "steps": 1' + "0" * 400 + "}", '{"do": "preset", "name": []}',
+                    '{"do": "task", "name": {}}', '{"do": "say", "text": 1}', '{"do": "wheel", "steps": NaN}',
+                    '{"do": "choose", "number": 1e999}', "\ud800", ""):  # fmt: skip
+            await again.send_str(odd.encode("utf-8", "surrogatepass").decode("utf-8", "replace"))
+            await heard(again, "refused")
         deep = await client.ws_connect(f"{address}/session", headers={"Origin": address})
         await deep.send_str("[" * 4000)
         assert await refused(deep) == 4403

@@ -232,7 +232,7 @@ def test_a_worker_inherits_no_open_file(tmp_path: Path) -> None:
         images.read(path, untrusted=True)
         assert worker._current is not None
         held = [os.readlink(one) for one in Path(f"/proc/{worker._current.pid}/fd").iterdir()]
-    assert sorted(name.partition(":")[0] for name in held) == ["/dev/null"] * 4 + ["socket"]
+    assert sorted(name.partition(":")[0] for name in held) == ["/dev/null"] * 3 + ["socket"]
 
 
 def test_the_guard_costs_little_for_a_batch(tmp_path: Path) -> None:

@@ -5,8 +5,8 @@ operates, once; one that watches. Host and origin of each request are checked, a
 from __future__ import annotations
 
 import hmac
-import math
 import secrets
+import sys
 from collections.abc import Callable
 from typing import Any
 from urllib.parse import urlsplit
@@ -72,7 +72,9 @@ def origin_is_ours(origin: str | None, host: str | None) -> bool:
 
 
 def _number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= sys.float_info.max  # neither NaN, nor whole numbers that no double holds
 
 
 def _steps(value: object) -> bool:
@@ -88,7 +90,11 @@ def _text(value: object) -> bool:
 
 
 def _task(value: object) -> bool:
-    return value in ("", "lesson", *TASKS, *(page.name for page in LESSON))
+    return isinstance(value, str) and value in ("", "lesson", *TASKS, *(page.name for page in LESSON))
+
+
+def _preset(value: object) -> bool:
+    return isinstance(value, str) and value in PRESETS
 
 
 FIELDS = {field: what for what, field, *_ in OFFERED}  # that have a slider; no other is changed from a page
@@ -97,7 +103,7 @@ ASKED: dict[str, dict[str, Callable[[object], bool]]] = {
     "move": {"way": _way}, "wheel": {"steps": _steps}, "press": {"on": lambda value: isinstance(value, bool)},
     "retract": {}, "stop": {}, "arm": {}, "pause": {}, "step": {}, "slower": {}, "faster": {}, "rewind": {}, "undo": {},
     "redo": {},
-    "preset": {"name": lambda value: value in PRESETS}, "task": {"name": _task}, "choose": {"number": _number},
+    "preset": {"name": _preset}, "task": {"name": _task}, "choose": {"number": _number},
     "say": {"text": _text},
     "change": {"what": _text, "field": lambda value: isinstance(value, str) and value in FIELDS, "value": _number},
 }  # fmt: skip

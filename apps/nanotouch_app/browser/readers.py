@@ -4,6 +4,7 @@ missed is summed up, never kept. No reader is waited for, and the session does n
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Awaitable, Callable
 from typing import Any
 
@@ -24,6 +25,7 @@ class Reader:
         self.send, self.operates = send, operates
         self.summary = Summary()
         self.free = True  # the last update was taken
+        self.refusal: asyncio.Task[None] | None = None  # the last one, until it is sent
         self.updates = self.bytes = self.dropped = 0
 
 

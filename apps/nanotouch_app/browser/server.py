@@ -90,10 +90,11 @@ class Server:
             for reader, update in self.readers.look():
                 self._send(reader, update)
 
-    def _send(self, reader: Reader, data: bytes | str) -> None:
+    def _send(self, reader: Reader, data: bytes | str) -> asyncio.Task[None]:
         task = self.loop.create_task(_quietly(reader.send, data))
         self._sent.add(task)
         task.add_done_callback(self._sent.discard)
+        return task
 
     # --- requests ---
 
@@ -157,14 +158,20 @@ class Server:
         if text == "{}":  # the last update was taken
             reader.free = True
             return
+        if not reader.operates:  # whatever it says
+            self._refuse(reader, "this page watches: another one holds the hand")
+            return
         try:
             message = checked(json.loads(text))
-            if not reader.operates:
-                raise Error("this page watches: another one holds the hand")
-        except (Error, ValueError, RecursionError) as error:
-            self._send(reader, message_text({"tell": "refused", "why": str(error), "field": None}))
+        except Exception as error:  # a page's words are never a traceback in the operator's terminal
+            self._refuse(reader, str(error) if isinstance(error, Error) else "this message cannot be read")
             return
         self.asked.put(message)
+
+    def _refuse(self, reader: Reader, why: str) -> None:
+        """In words, once until they are sent: who asks without end makes no tasks without end."""
+        if reader.refusal is None or reader.refusal.done():
+            reader.refusal = self._send(reader, message_text({"tell": "refused", "why": why, "field": None}))
 
     # --- from the host's thread ---
 

@@ -16,14 +16,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from . import curves, images
 from ._io import confine, guard, transfer
 from ._io.readers import _registered
-from .curves import asylum_pair
-from .curves.reading import Stream
 from .errors import Error
-from .images.masking import picture_of
-from .images.values import plane_of
 
 _FOR_IMAGES = ("cv2", "h5py", "scipy.io", "tifffile", "igor2.binarywave", "SurfaceTopography.IO")
 _OWN = (".gsf", ".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series", ".mcap", ".part", ".nc", ".topostats")
@@ -31,29 +26,25 @@ _SPAN = 1 << 16  # of a request [byte]
 _BESIDE = 64  # files of the same stem
 
 
-def _recording(file: Path) -> dict[str, Any]:
-    from .touch import _recording_file  # a layer that only this job needs
-
-    return _recording_file.parts_of(file)
-
-
-def _map(file: Path) -> dict[str, Any]:
-    from .maps import dataset  # as above
-
-    return dataset.parts_of(file)
-
-
-_JOBS: dict[str, Callable[..., Any]] = {
-    "images.read": images.read,
-    "images.plane": plane_of,
-    "images.channels": images.channels,
-    "images.planes": images.planes,
-    "images.picture": picture_of,
-    "curves.read": curves.read,
-    "curves.thermal": curves.thermal_spectrum,
-    "record.read": _recording,
-    "maps.read": _map,
+_JOBS = {
+    "images.read": "nanotouch.images:read",
+    "images.plane": "nanotouch.images.values:plane_of",
+    "images.channels": "nanotouch.images:channels",
+    "images.planes": "nanotouch.images:planes",
+    "images.picture": "nanotouch.images.masking:picture_of",
+    "curves.read": "nanotouch.curves:read",
+    "curves.thermal": "nanotouch.curves:thermal_spectrum",
+    "curves.stream": "nanotouch.curves.reading:Stream",
+    "record.read": "nanotouch.touch._recording_file:parts_of",
+    "maps.read": "nanotouch.maps.dataset:parts_of",
 }
+"""what reads, by the words of a request; imported when it is first asked for"""
+
+
+def _reader(job: str) -> Callable[..., Any]:
+    module, _, name = _JOBS[job].partition(":")
+    found: Callable[..., Any] = getattr(importlib.import_module(module), name)
+    return found
 
 
 def main() -> None:
@@ -67,6 +58,7 @@ def serve(control: socket.socket) -> None:
     warnings.simplefilter("ignore")  # nobody would see them
     gc.disable()  # nothing that was inherited is closed behind our back
     os.environ["HDF5_PLUGIN_PRELOAD"] = "::"  # no filters from elsewhere
+    confine.prepare()
     control.sendall(b"ready\n")
     while True:
         message, files, _, _ = socket.recv_fds(control, _SPAN, 1)
@@ -87,13 +79,14 @@ def serve(control: socket.socket) -> None:
 def _prepare(job: str, file: Path) -> None:
     """Import once what every child of this kind would import again, going by the name of the file alone."""
     ending = file.suffix.lower()
-    with suppress(Error):  # a reader that cannot be loaded is named when it is wanted
+    with suppress(Exception):  # what cannot be loaded is named when it is wanted
+        _reader(job)
         _registered()
-    wanted: tuple[str, ...] = ()
+    wanted: tuple[str, ...] = ("numpy.ma",)
     if job == "record.read":
-        wanted = ("mcap.stream_reader", "zstandard", "nanotouch.touch.record")
+        wanted = ("mcap.stream_reader", "zstandard")
     elif job == "maps.read":
-        wanted = ("xarray", "h5netcdf", "nanotouch.maps")
+        wanted = ("xarray", "h5netcdf")
     elif ending not in _OWN:
         wanted = _FOR_IMAGES if job.startswith("images.") else ("h5py", "afmformats")
     for name in wanted:
@@ -122,7 +115,10 @@ def _write(stream: Any, piece: bytes | memoryview) -> None:
 def _readable(file: Path) -> list[Path]:
     """The file, and those that belong to it: of the same stem, and the other half of a pair."""
     beside = [one for one in os.listdir(file.parent) if Path(one).stem == file.stem]
-    return [file, *(file.parent / one for one in beside[:_BESIDE]), *asylum_pair.files_of(file)]
+    pair = []
+    if file.suffix.lower() == ".ibw":
+        pair = importlib.import_module("nanotouch.curves.asylum_pair").files_of(file)
+    return [file, *(file.parent / one for one in beside[:_BESIDE]), *pair]
 
 
 def _answers(request: dict[str, Any], file: Path, stream: Any) -> Iterator[list[bytes | memoryview]]:
@@ -130,7 +126,7 @@ def _answers(request: dict[str, Any], file: Path, stream: Any) -> Iterator[list[
         if request["job"] == "curves.stream":
             yield from _streamed(file, request["options"], stream)
         else:
-            yield transfer.packed(_JOBS[request["job"]](file, **request["options"]))
+            yield transfer.packed(_reader(request["job"])(file, **request["options"]))
     except Error as error:
         reader = getattr(error, "reader", "")
         yield transfer.packed({"error": str(error), "type": type(error).__name__, "reader": reader})
@@ -143,7 +139,7 @@ def _answers(request: dict[str, Any], file: Path, stream: Any) -> Iterator[list[
 
 def _streamed(file: Path, options: dict[str, Any], stream: Any) -> Iterator[list[bytes | memoryview]]:
     """First where each curve was taken, then the curves that are asked for, a line ``start stop`` each."""
-    found = Stream(file, curves.Calibration(**options))
+    found = _reader("curves.stream")(file, importlib.import_module("nanotouch.curves").Calibration(**options))
     yield transfer.packed({"places": [found.place(number) for number in range(len(found))]})
     line = b""
     while byte := stream.read(1):
@@ -154,7 +150,7 @@ def _streamed(file: Path, options: dict[str, Any], stream: Any) -> Iterator[list
             line = b""
 
 
-def _or_error(found: Stream, number: int) -> Any:
+def _or_error(found: Any, number: int) -> Any:
     try:
         return found[number]
     except Error as error:

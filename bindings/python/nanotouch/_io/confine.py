@@ -9,20 +9,24 @@ import os
 import platform
 import resource
 import signal
+import stat
 import struct
 import sys
 import sysconfig
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 _NO_NEW_PRIVS, _SECCOMP, _FILTER = 38, 22, 2
 _CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
 _READ_FILE, _READ_FOLDER, _EXECUTE = 1 << 2, 1 << 3, 1 << 0
+_READ = _READ_FILE | _READ_FOLDER | _EXECUTE
 _WRITE = sum(1 << bit for bit in (1, 4, 5, 7, 8, 12))  # write to, remove and make files, folders and links
+_TRUNCATE = 1 << 14
 _RIGHTS = (0, 13, 14, 15, 15, 16)  # number of rights over files that each version of Landlock knows
 _SYSTEM = ("/usr/lib", "/usr/lib64", "/lib", "/lib64", "/usr/share/zoneinfo", "/etc/localtime", "/etc/ld.so.cache",
-           "/dev/null", "/dev/urandom", "/proc/self", "/sys/devices/system/cpu", "/proc/cpuinfo",
+           "/dev/null", "/dev/urandom", "/sys/devices/system/cpu", "/proc/cpuinfo",
            "/proc/meminfo")  # fmt: skip
 
 # Numbers of system calls: those of x86-64, and of the table that newer machines share.
@@ -53,11 +57,14 @@ _libc = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
 
 def confine(limits: Mapping[str, Any], readable: Iterable[Path], scratch: tuple[Path, int] | None) -> None:
     """Give up everything but reading these files, and writing into the folder ``scratch``, files of so many bytes."""
+    has_kernel = _libc is not None and _libc.prctl(_NO_NEW_PRIVS, 1, 0, 0, 0) == 0
+    if has_kernel:
+        _restrict_files(readable, scratch[0] if scratch else None)
+        for opened, _ in prepare():
+            os.close(opened)
     set_limits(limits, scratch[1] if scratch else 0)
-    if _libc is None or _libc.prctl(_NO_NEW_PRIVS, 1, 0, 0, 0) != 0:
-        return
-    _restrict_files(readable, scratch[0] if scratch else None)
-    _restrict_calls()
+    if has_kernel:
+        _restrict_calls()
 
 
 def set_limits(limits: Mapping[str, Any], file_size: int) -> None:
@@ -98,11 +105,13 @@ def _restrict_files(readable: Iterable[Path], scratch: Path | None) -> None:
     asked = struct.pack("<3Q", every, network, scoped)[: 8 if version < 4 else 16 if version < 6 else 24]
     ruleset = _libc.syscall(_CREATE_RULESET, asked, len(asked), 0)
     if ruleset < 0:
-        return
-    for place in [*map(Path, _SYSTEM), *_libraries(), *readable]:
-        _allow(ruleset, place, _READ_FILE | _READ_FOLDER | _EXECUTE)
+        raise OSError(ctypes.get_errno(), "Landlock takes no rules")
+    for opened, rights in prepare():
+        _add_rule(ruleset, opened, rights)
+    for place in (Path("/proc/self"), *readable):
+        _allow(ruleset, place, _READ_FILE | _READ_FOLDER)
     if scratch is not None:
-        _allow(ruleset, scratch, (_READ_FILE | _READ_FOLDER | _WRITE) | (1 << 14 if version >= 3 else 0))
+        _allow(ruleset, scratch, _READ_FILE | _READ_FOLDER | _WRITE | (_TRUNCATE if version >= 3 else 0))
     if _libc.syscall(_RESTRICT_SELF, ruleset, 0) != 0:
         raise OSError(ctypes.get_errno(), "Landlock refuses its own rules")
     os.close(ruleset)
@@ -120,16 +129,31 @@ def _package_folders() -> set[str]:
     return {os.path.dirname(file) for file in files if file}
 
 
-def _allow(ruleset: int, place: Path, rights: int) -> None:
-    assert _libc is not None
+@lru_cache(maxsize=1)
+def prepare() -> tuple[tuple[int, int], ...]:
+    """The libraries, opened, with the rights to them: done once by the process that forks those that are confined."""
+    places = [*map(Path, _SYSTEM), *_libraries()] if _libc is not None else []
+    return tuple(found for place in places if (found := _opened(place, _READ)) is not None)
+
+
+def _opened(place: Path, rights: int) -> tuple[int, int] | None:
     try:
         opened = os.open(place, os.O_PATH | os.O_CLOEXEC)
     except OSError:
-        return
-    if not place.is_dir():
-        rights &= _READ_FILE | _EXECUTE
+        return None
+    return opened, rights if stat.S_ISDIR(os.fstat(opened).st_mode) else rights & (_READ_FILE | _EXECUTE)
+
+
+def _allow(ruleset: int, place: Path, rights: int) -> None:
+    found = _opened(place, rights)
+    if found is not None:
+        _add_rule(ruleset, *found)
+        os.close(found[0])
+
+
+def _add_rule(ruleset: int, opened: int, rights: int) -> None:
+    assert _libc is not None
     _libc.syscall(_ADD_RULE, ruleset, 1, struct.pack("<Qi", rights, opened), 0)
-    os.close(opened)
 
 
 def _restrict_calls() -> None:

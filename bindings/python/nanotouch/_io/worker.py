@@ -40,7 +40,7 @@ def ask(job: str, file: Path, options: dict[str, Any], expected: type[Answer], p
     happens to the worker."""
     check_system(file)
     limits = guard.LIMITS.of(file)
-    request = {"job": job, "file": str(file.absolute()), "options": options, "limits": asdict(limits)}
+    request: dict[str, Any] = {"job": job, "file": str(file.absolute()), "options": options, "limits": asdict(limits)}
     kind = (get_args(expected) or (expected,))[0]
     request["written"] = limits.memory if _is_archive(file) else 0  # what is unpacked; nothing else is ever written
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder, _lock:
