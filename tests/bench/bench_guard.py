@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the guard costs: the same batch of files read in this process and in confined ones, turn by turn.
 
-python tests/bench/bench_guard.py [files] [turns]: wall and processor time of a fresh Python that has imported the readers
-of its files, with all its children; the median of the differences.
+python tests/bench/bench_guard.py [files] [turns]: wall and processor time of a fresh Python that has imported readers
+and its children; the median of the differences.
 """
 
 from __future__ import annotations
