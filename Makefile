@@ -7,7 +7,7 @@ VENV := .venv/bin
 # five times the processor time with two.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz sanitize sanitize-sample mutate damage corpus heavy adversary windows macos kernel conformance bench lint format clean
+.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz sanitize sanitize-sample mutate damage corpus heavy adversary windows macos kernel conformance bench lint format lock sbom versions clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -144,6 +144,18 @@ format:  ## format all sources
 	@$(VENV)/clang-format -i $(C_FILES)
 	@$(VENV)/ruff check --fix-only .
 	@$(VENV)/ruff format .
+
+lock:  ## the packages of demo and test by version and SHA-256, tools/lock; needs the net
+	@tools/setup.sh demo
+	@tools/lock.sh
+
+sbom:  ## the list of parts, CycloneDX, build/sbom.json
+	@mkdir -p build
+	@python3 tools/sbom.py tools/lock/demo.txt >build/sbom.json
+
+versions:  ## the oldest and the newest packages that are allowed, tested; needs the net; some minutes
+	@tools/setup.sh test
+	@tools/versions.sh
 
 clean:  ## forget everything that was built
 	@rm -rf build .venv

@@ -114,8 +114,14 @@ has_stamp() {
 
 install_dependencies() {
   say "Installing the Python packages that are missing (about 340 MB at first)"
-  .venv/bin/python tools/requirements.py "$extras" >build/requirements.txt
-  pip install -q -r build/requirements.txt
+  case $profile in
+    docs | lint)
+      .venv/bin/python tools/requirements.py "$extras" >build/requirements.txt
+      pip install -q -r build/requirements.txt
+      ;;
+    test | sanitize | mutate) pip install -q --require-hashes -r tools/lock/test.txt ;;
+    *) pip install -q --require-hashes -r tools/lock/demo.txt ;;
+  esac
 }
 
 install_package() {
@@ -143,7 +149,7 @@ mkdir -p build
 fetch_libgpiod
 
 # lint's packages include test's, and test's include demo's, which are those of page and kernel.
-key=$(hash_of pyproject.toml)
+key=$(hash_of pyproject.toml tools/lock)
 case $profile in demo | page | kernel) stamps="demo page kernel test lint" ;; test | sanitize) stamps="test lint sanitize mutate" ;; *) stamps=$profile ;; esac
 if ! has_stamp "$key" $stamps; then
   install_dependencies
