@@ -115,11 +115,11 @@ has_stamp() {
 install_dependencies() {
   say "Installing the Python packages that are missing (about 340 MB at first)"
   case $profile in
-    docs | lint)
+    docs | lint | mutate)
       .venv/bin/python tools/requirements.py "$extras" >build/requirements.txt
       pip install -q -r build/requirements.txt
       ;;
-    test | sanitize | mutate) pip install -q --require-hashes -r tools/lock/test.txt ;;
+    test | sanitize) pip install -q --require-hashes -r tools/lock/test.txt ;;
     *) pip install -q --require-hashes -r tools/lock/demo.txt ;;
   esac
 }
