@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 import nanotouch as nt
-from nanotouch._io import guard
+from nanotouch import guard
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app import examples, stop

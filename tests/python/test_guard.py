@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import synthetic
-from nanotouch import curves, images, record
-from nanotouch._io import confine, guard, worker
+from nanotouch import curves, guard, images, record
+from nanotouch._io import confine, worker
 from nanotouch.errors import Error, ReadError
 from nanotouch_app.main import main
 

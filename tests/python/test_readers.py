@@ -17,8 +17,8 @@ import synthetic
 pytest.importorskip("SurfaceTopography")
 pytest.importorskip("afmformats")
 
-from nanotouch import curves, formats, images
-from nanotouch._io import guard, readers, transfer, worker
+from nanotouch import curves, formats, guard, images
+from nanotouch._io import readers, transfer, worker
 from nanotouch.errors import Error, InvalidValue, ReadError
 
 #: A reader of files that begin with ``FAKE``; what follows says how it behaves.

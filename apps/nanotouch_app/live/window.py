@@ -17,8 +17,7 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch import record
-from nanotouch._io import guard
+from nanotouch import guard, record
 from nanotouch.errors import DeviceError, Error, InvalidValue
 
 from nanotouch_app.live import board, cards, hands, parts

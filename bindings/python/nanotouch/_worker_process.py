@@ -16,7 +16,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from ._io import confine, guard, transfer
+from . import guard
+from ._io import confine, transfer
 from ._io.readers import _registered
 from .errors import Error
 

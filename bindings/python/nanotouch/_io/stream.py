@@ -11,7 +11,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from nanotouch._io import guard, transfer, worker
+from nanotouch import guard
+from nanotouch._io import transfer, worker
 from nanotouch.errors import Error, ReadError
 
 BLOCK = 64  # curves

@@ -9,6 +9,7 @@ child confines itself (:mod:`nanotouch._io.confine`) and reads. A child that is 
 from __future__ import annotations
 
 import atexit
+import importlib
 import json
 import os
 import select
@@ -26,7 +27,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypeVar, cast, get_args, get_origin
 
-from nanotouch._io import guard, transfer
+from nanotouch import guard
+from nanotouch._io import transfer
 from nanotouch.errors import Error, InvalidValue, MissingExtra, ReadError
 
 Answer = TypeVar("Answer")
@@ -202,9 +204,7 @@ def _serve(theirs: socket.socket) -> None:
         if int(name) > 2 and int(name) != theirs.fileno():
             with suppress(OSError):
                 os.close(int(name))
-    from nanotouch import _worker_process
-
-    _worker_process.serve(theirs)
+    importlib.import_module("nanotouch._worker_process").serve(theirs)  # of the uppermost layer
 
 
 def _started(theirs: socket.socket) -> subprocess.Popen[bytes]:

@@ -7,7 +7,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .._io import guard, worker
+from .. import guard
+from .._io import worker
 from .._io.files import checked_path, guarded, refuse_traps
 from .._io.readers import head_of, registered_for
 from .._io.stream import Guarded

@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .._io import guard, worker
+from .. import guard
+from .._io import worker
 from .._io.files import checked_path, guarded
 from ..errors import InvalidValue, ReadError
 from ..units import parse_quantity

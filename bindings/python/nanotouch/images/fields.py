@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from .._io import guard, worker
+from .. import guard
+from .._io import worker
 from .._io.files import checked_path, guarded
 from .._io.writing import replacing
 from ..errors import InvalidValue, ReadError, require

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import guard
 from .._arrays import Floats, check_between
-from .._io import guard, worker
+from .._io import worker
 from .._io.files import checked_path, guarded
 from ..errors import InvalidValue, ReadError, require
 from ._robust import MAD

@@ -15,8 +15,9 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import guard
 from .._arrays import Floats
-from .._io import guard, worker
+from .._io import worker
 from .._io.digest import file_digest
 from .._io.files import checked_path, guarded
 from .._io.words import printable

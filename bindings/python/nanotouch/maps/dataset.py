@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._io import guard, worker
+from .. import guard
+from .._io import worker
 from .._io.files import checked_path, guarded, refuse_traps
 from .._io.readers import head_of
 from .._io.writing import replacing

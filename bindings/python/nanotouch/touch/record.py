@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nanotouch._io import guard, html, worker
+from nanotouch import guard
+from nanotouch._io import html, worker
 from nanotouch._io.files import checked_path
 from nanotouch._io.writing import BLOCK_ROWS
 from nanotouch._io.writing import replacing as replacing
