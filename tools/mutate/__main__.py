@@ -3,7 +3,7 @@
 
 Draws mutants of the sources, builds one program per test with all of them behind switches, runs for each mutant the
 tests that pass through it, and reports those that no test kills. A mutant that changes no result is listed in
-equivalents.toml with the reason and does not count. Exits with 1 where a folder's share of killed ones is below its floor.
+equivalents.toml with the reason and does not count. Exits with 1 where a folder's killed fraction is below its floor.
 """
 
 from __future__ import annotations

@@ -57,13 +57,14 @@ class Build:
         for name in self._tracked():
             content = (self.root / name).read_bytes()
             if name in by_file:
-                content = b"int nt_mutant_is(int number);\n" + c_source.with_switches(content, by_file[name])
+                content = b"int mutant_is_on(int number);\n" + c_source.with_switches(content, by_file[name])
             _write(self.tree / name, content)
         switch = self.folder / "switch.o"
         self.folder.mkdir(parents=True, exist_ok=True)
         subprocess.run(["cc", "-O1", "-fPIC", "-c", str(HERE / "switch.c"), "-o", str(switch)], check=True)
-        options = {"CMAKE_BUILD_TYPE": "Release", "CMAKE_C_FLAGS": "-w", "CMAKE_EXE_LINKER_FLAGS": str(switch),
-                   "BUILD_SHARED_LIBS": "OFF", "NANOTOUCH_APPS": "OFF", "NANOTOUCH_FIT": "OFF", "NANOTOUCH_WERROR": "OFF"}  # fmt: skip
+        options = {"CMAKE_BUILD_TYPE": "Release", "CMAKE_C_FLAGS": "-w", "CMAKE_EXE_LINKER_FLAGS": str(switch)}
+        off = ("BUILD_SHARED_LIBS", "NANOTOUCH_APPS", "NANOTOUCH_FIT", "NANOTOUCH_WERROR")
+        options |= dict.fromkeys(off, "OFF")
         command = ["cmake", "-S", str(self.tree), "-B", str(self.folder), "-G", "Ninja", "--log-level=ERROR"]
         subprocess.run(command + [f"-D{key}={value}" for key, value in options.items()], check=True)
         subprocess.run(["cmake", "--build", str(self.folder), "--", "-k", "0"], check=True, stdout=subprocess.DEVNULL)
@@ -89,10 +90,8 @@ class Build:
 def run_quietly(command: list[str], environment: dict[str, str], folder: Path, timeout: float) -> tuple[bool, float]:
     """Run a command without its output; return whether it ended in time with 0, and what it took [s]."""
     begun = time.monotonic()
-    process = subprocess.Popen(
-        command, env=environment, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )  # fmt: skip
+    quiet = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+    process = subprocess.Popen(command, env=environment, cwd=folder, start_new_session=True, **quiet)
     try:
         status = process.wait(timeout)
     except subprocess.TimeoutExpired:

@@ -78,12 +78,8 @@ def _changes(cursor: cindex.Cursor, source: bytes) -> Iterator[Change]:
     """Yield start, end, new text and whether it is a whole statement, of all changes below a cursor."""
     for child in cursor.get_children():
         is_static = child.kind == cindex.CursorKind.VAR_DECL and child.storage_class == cindex.StorageClass.STATIC
-        if (
-            child.kind in CONSTANT
-            or is_static
-            or "[" in child.type.spelling
-            and child.kind == cindex.CursorKind.VAR_DECL
-        ):
+        is_array = child.kind == cindex.CursorKind.VAR_DECL and "[" in child.type.spelling
+        if child.kind in CONSTANT or is_static or is_array:
             if child.kind == cindex.CursorKind.CASE_STMT:
                 yield from _changes_of_case(child, source)
             continue
@@ -151,7 +147,7 @@ def _swapped(children: list[cindex.Cursor], extent: tuple[int, int], source: byt
 
 
 def with_switches(source: bytes, mutants: dict[int, Mutant]) -> bytes:
-    """Return the source with these mutants of it, by their numbers, each in force only while its number is switched on."""
+    """Return the source with these mutants of it, by their numbers, each in force while its number is switched on."""
     return _switched(source, 0, len(source), sorted(mutants.items(), key=lambda item: (item[1].start, -item[1].end)))
 
 
@@ -163,7 +159,7 @@ def _switched(source: bytes, start: int, end: int, mutants: list[tuple[int, Muta
         mutants = rest[len(inside) :]
         parts.append(source[at : first.start])
         kept = _switched(source, first.start, first.end, inside).decode()
-        is_on = f"nt_mutant_is({number})"
+        is_on = f"mutant_is_on({number})"
         changed = f"if (!{is_on}) {{ {kept} }}" if first.is_statement else f"({is_on} ? ({first.text}) : ({kept}))"
         parts.append(changed.encode())
         at = first.end

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mutants of Python: where a module may be changed, and the module with all drawn changes in it, each behind a switch."""
+"""Mutants of Python: where a module may be changed, and the module with all drawn changes in it, behind switches."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from c_source import Mutant, numbered
 COMPARED = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
             ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In}  # fmt: skip
 CALCULATED = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult}
-IMPORT = "from nanotouch_mutants import is_on as _nt_mutant_is_on"
+IMPORT = "from nanotouch_mutants import is_on as _mutant_is_on_on"
 
 
 def changed(node: ast.AST) -> ast.expr | None:
@@ -36,12 +36,13 @@ def changed(node: ast.AST) -> ast.expr | None:
 
 
 def _is_text(node: ast.BinOp) -> bool:
-    return any(isinstance(side, ast.JoinedStr | ast.List | ast.Tuple) or isinstance(side, ast.Constant) and isinstance(side.value, str)
-               for side in (node.left, node.right))  # fmt: skip
+    texts = (ast.JoinedStr, ast.List, ast.Tuple)
+    sides = (node.left, node.right)
+    return any(isinstance(s, texts) or (isinstance(s, ast.Constant) and isinstance(s.value, str)) for s in sides)
 
 
 class _Walk(ast.NodeTransformer):
-    """Visits every place where a change may stand; `switched` maps the count of the place to the number of its switch."""
+    """Visits every place where a change may stand; `switched` maps the count of the place to its switch."""
 
     def __init__(self, path: str, source: str, switched: dict[int, int] | None = None):
         self.path, self.source, self.switched = path, source, switched or {}
@@ -50,11 +51,11 @@ class _Walk(ast.NodeTransformer):
 
     def visit_FunctionDef(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.AST:
         outer, self.function = self.function, f"{self.function}.{node.name}".lstrip(".")
-        node.body = [part for part in map(self.visit, node.body)]
+        node.body = list(map(self.visit, node.body))
         self.function = outer
         return node
 
-    visit_AsyncFunctionDef = visit_FunctionDef  # noqa: N815
+    visit_AsyncFunctionDef = visit_FunctionDef
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AST:
         if node.value is not None:
@@ -94,7 +95,7 @@ class _Walk(ast.NodeTransformer):
 
 
 def _is_off(number: int) -> ast.expr:
-    call = ast.Call(ast.Name("_nt_mutant_is_on", ast.Load()), [ast.Constant(number)], [])
+    call = ast.Call(ast.Name("_mutant_is_on_on", ast.Load()), [ast.Constant(number)], [])
     return ast.UnaryOp(ast.Not(), call)
 
 
@@ -107,7 +108,7 @@ def of_file(path: Path, root: Path) -> list[Mutant]:
 
 
 def with_switches(source: str, mutants: dict[int, Mutant]) -> str:
-    """Return the module with these mutants of it, by their numbers, each in force only while its number is switched on."""
+    """Return the module with these mutants of it, by their numbers, each in force while its number is switched on."""
     walk = _Walk("", source, {mutant.start: number for number, mutant in mutants.items()})
     tree = walk.visit(ast.parse(source))
     after = next(
@@ -120,4 +121,4 @@ def with_switches(source: str, mutants: dict[int, Mutant]) -> str:
 
 def _is_first(part: ast.stmt) -> bool:
     is_docstring = isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant)
-    return is_docstring or isinstance(part, ast.ImportFrom) and part.module == "__future__"
+    return is_docstring or (isinstance(part, ast.ImportFrom) and part.module == "__future__")

@@ -8,8 +8,8 @@ enum { MUTANTS = 50000 };
 static int on;
 static unsigned char reached[MUTANTS];
 
-int nt_mutant_is(int number);
-int nt_mutant_is(int number)
+int mutant_is_on(int number);
+int mutant_is_on(int number)
 {
     reached[number] = 1;
     return on == number;
