@@ -145,6 +145,22 @@ def test_lines_that_were_not_measured_are_left_out(tmp_path: Path) -> None:
     assert read.notes == ("20 of 32 lines were not measured ('Valid data len Y') and are left out",)
 
 
+def test_places_in_the_file_that_cannot_be(tmp_path: Path) -> None:
+    def moved(old: str, new: str) -> Path:
+        path = write(tmp_path / "a.spm", picture(NX, 1), picture(NX, 2, name="Phase"))
+        path.write_bytes(path.read_bytes().replace(f"Data offset: {old}".encode(), f"Data offset: {new}".encode()))
+        return path
+
+    assert any("overlap" in note and "Phase" in note for note in images.read(moved("6144", "5144")).notes)
+    with pytest.raises(ReadError, match="begin at 40, inside of the header"):
+        images.read(moved("4096", "0040"), "Height")
+    with pytest.raises(ReadError, match="no channel of heights can be read: 'Height': its data are to begin at 40"):
+        images.read(moved("4096", "0040"))
+    beyond = picture(NX, more=("Valid data start Y: 20", "Valid data len Y: 20"))
+    (note,) = images.read(write(tmp_path / "b.spm", beyond)).notes
+    assert "32 lines are held, but 'Valid data' tells of 20 to 40" in note
+
+
 def test_trace_is_the_default_and_names_tell_it_from_retrace(tmp_path: Path) -> None:
     pictures = [picture(NX, 1, way="Retrace", scan_line="Interleave"), picture(NX, 2, way="Retrace"),
                 picture(NX, 3, way="Trace"), picture(NX, 4, name="Phase", scale="V (0.005 V/LSB) 360 º")]  # fmt: skip

@@ -31,6 +31,7 @@ class Section(dict[str, str]):
     def __init__(self, file: Path, name: str) -> None:
         super().__init__()
         self.file, self.name = file, name
+        self.header_end = 0  # of the file's header [byte], in its first section
 
     def text(self, key: str) -> str:
         """Of a key that must be there."""
@@ -83,7 +84,11 @@ def sections(file: Path) -> list[Section]:
         text = stream.read(_HEADER_LIMIT).split(b"\x1a")[0].decode("latin-1")
     if "\\*File list end" not in text:
         raise ReadError(f"{file}: its header does not end")
-    return parsed(file, text.split("\\*File list end")[0].splitlines())
+    before, end, _ = text.partition("\\*File list end")
+    found = parsed(file, before.splitlines())
+    if found:
+        found[0].header_end = len(before) + len(end)
+    return found
 
 
 def parsed(file: Path, lines: Iterable[str]) -> list[Section]:

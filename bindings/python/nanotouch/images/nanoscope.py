@@ -61,7 +61,10 @@ def channels(file: Path) -> list[Channel]:
 def read(file: Path, channel: str | None) -> Plane:
     """One channel, the height channel if none is named."""
     found = _images(file)
-    image = found[chosen(_listed(found), channel, file)]
+    listed = _listed(found)
+    if channel is None and not any(one.default for one in listed) and any(one.problem for one in found):
+        raise ReadError(f"{file}: no channel of heights can be read: {_problems(found)}")
+    image = found[chosen(listed, channel, file)]
     if image.layout is None:
         raise ReadError(f"{file}: channel {image.name!r} cannot be read: {image.problem}")
     values = _values(file, image.layout) * image.factor
@@ -109,9 +112,12 @@ def _images(file: Path) -> list[_Image]:
     names = _names(listed)
     found = [_described(file, sections, scan, one, name) for one, name in zip(listed, names, strict=True)]
     if all(image.problem for image in found):
-        told = "; ".join(f"{image.name!r}: {image.problem}" for image in found)
-        raise ReadError(f"{file}: none of its channels can be read: {told}")
+        raise ReadError(f"{file}: none of its channels can be read: {_problems(found)}")
     return found
+
+
+def _problems(found: Sequence[_Image]) -> str:
+    return "; ".join(f"{image.name!r}: {image.problem}" for image in found if image.problem)
 
 
 def _scan(sections: list[Section]) -> Section:

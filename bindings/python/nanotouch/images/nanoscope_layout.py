@@ -70,7 +70,11 @@ def layout_of(file: Path, sections: list[Section], scan: Section, one: Section) 
     held = file.stat().st_size
     if offset + length > held:
         raise ReadError(f"{file}: {held} bytes long, but its data end at {offset + length}: it is cut off")
-    notes: list[str] = []
+    if offset < sections[0].header_end:
+        raise ReadError(
+            f"{file}: its data are to begin at {offset}, inside of the header ({sections[0].header_end} bytes)"
+        )
+    notes = _overlaps(sections, one, offset, length)
     width = _width(file, sections, one, nx * stated)
     global_nx, global_lines = (_count(scan, key) for key in ("samps/line", "lines"))
     by_scan = bool(global_nx and length % (nx * width) and length == global_nx * global_lines * width)
@@ -84,6 +88,18 @@ def layout_of(file: Path, sections: list[Section], scan: Section, one: Section) 
     sides = _Sides.of(scan, one, (nx, stated, lines), scale)
     pixel_size = sides.pixel_size(notes)
     return Layout(offset, width, (lines, nx), rows, columns, pixel_size, tuple(notes))
+
+
+def _overlaps(sections: list[Section], one: Section, offset: int, length: int) -> list[str]:
+    """Of other channels, that claim the same bytes."""
+    others = [
+        other.channel or other.name
+        for other in sections
+        if other is not one and _count(other, "data offset") and _count(other, "data length")
+        and _count(other, "data offset") < offset + length
+        and offset < _count(other, "data offset") + _count(other, "data length")
+    ]  # fmt: skip
+    return [f"its data overlap those of {', '.join(others)}: one of their places in the file is wrong"] * bool(others)
 
 
 def _count(section: Section, key: str) -> int:
@@ -137,6 +153,8 @@ def _measured(one: Section, stored: tuple[int, int], notes: list[str]) -> tuple[
     parts = []
     for axis, count, noun in (("Y", stored[0], "lines"), ("X", stored[1], "samples")):
         first, long = (_count(one, f"valid data {key} {axis}".lower()) for key in ("start", "len"))
+        if first + long > count:
+            notes.append(f"{count} {noun} are held, but 'Valid data' tells of {first} to {first + long}: all are read")
         if not 0 < long < count or first + long > count:
             parts.append(slice(0, count))
             continue
