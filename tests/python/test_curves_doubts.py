@@ -50,6 +50,14 @@ def test_an_inverted_deflection() -> None:
     assert "the sign of the deflection looks inverted" in note
 
 
+def test_a_height_that_counts_the_other_way() -> None:
+    force = indentation(1e-12)
+    (note,) = doubts(curve(force[::-1], force))
+    assert "its height looks reversed" in note
+    tilted = np.linspace(0.0, 1e-9, 1000)  # a baseline with a tilt, and nothing touched
+    assert doubts(curve(tilted[::-1], tilted)) == doubts(curve(tilted, tilted[::-1])) == ()
+
+
 def test_an_approach_that_never_reached_its_trigger() -> None:
     force = np.random.default_rng(0).normal(0.0, 1e-11, 1000)
     (note,) = doubts(curve(force, force[::-1], setpoint=2e-9))

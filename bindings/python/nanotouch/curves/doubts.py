@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the readings of a curve say against themselves: a detector at its end, a deflection with the wrong sign, a ramp
-that ended before it reached its trigger."""
+"""What the readings of a curve say against themselves: a detector at its end, a deflection or a height with the
+wrong sign, a ramp that ended before it reached its trigger."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def doubts(curve: ForceCurve) -> tuple[str, ...]:
     """In words; nothing where the curve is as it should be."""
     branches = [one for one in (curve.approach, curve.retract) if one is not None and len(one) >= 4 * _STANDING]
     notes = []
-    for words in (_saturated(branches), _inverted(branches), _untriggered(curve)):
+    for words in (_saturated(branches), _inverted(branches), _turned(branches), _untriggered(curve)):
         notes += [words] if words else []
     return tuple(notes)
 
@@ -107,6 +107,23 @@ def _inverted(branches: list[Segment]) -> str:
     if not all(told):
         return ""
     return "the readings fall as the base goes in, to the end of both ways: the sign of the deflection looks inverted"
+
+
+def _turned(branches: list[Segment]) -> str:
+    """Readings that are flat where the base is near, and rise steadily to the far end of the travel."""
+    if not branches:
+        return ""
+    for segment in branches:
+        readings = _readings(segment)
+        if readings[int(segment.z.argmax())] < 0.5 * float(readings.max() + readings.min()):
+            return ""
+        values = readings[np.argsort(segment.z, kind="stable")]
+        count, spread = max(int(_ENDS * values.size), _STANDING), float(np.ptp(values))
+        near, far = values[: values.size // 2], values[-count:]
+        rises = float(far.max()) - float(np.median(near)) > _INVERTED * spread and float(np.ptp(far)) > 0.02 * spread
+        if not (rises and float(np.ptp(near)) < (1 - _INVERTED) * spread and _grows(far)):
+            return ""
+    return "the readings rise as the base goes away, and are flat where it is near: its height looks reversed"
 
 
 def _grows(values: Floats) -> bool:
