@@ -42,6 +42,16 @@ int nt_composition_allows(const nt_composition *composition, double margin)
     return minimum <= 0.0 || margin >= minimum;
 }
 
+/* Radius and material that change with the place add to what friction and slope hold; past the lateral limit what they
+ * push with may turn, too. */
+static void add_uneven(nt_composition *made, const nt_hazard *hazard)
+{
+    nt_guarantee *found = &made->guarantee;
+    const double uneven = nt_grip_uneven(nt_terrain_plan(made->terrain), found->force);
+    const double held = hazard->friction + hazard->slope * found->force;
+    found->lateral_force = uneven + fmin(fmax(held, found->lateral_force), found->lateral_force + uneven);
+}
+
 static nt_status promise(nt_composition *made, nt_problem *problem)
 {
     const nt_session_setup *setup = &made->setup;
@@ -62,8 +72,7 @@ static nt_status promise(nt_composition *made, nt_problem *problem)
         const nt_guarantee aside = nt_guarantee_within(&setup->rig, &setup->settings, &hazard, relief);
         made->guarantee.lateral_force = aside.lateral_force + nt_composition_resistance(made, made->guarantee.force);
     }
-    made->guarantee.lateral_force +=
-        2.0 * nt_grip_uneven(plan, made->guarantee.force); /* it may turn after the limit */
+    add_uneven(made, &hazard);
     return NT_OK;
 }
 

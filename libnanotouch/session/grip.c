@@ -8,7 +8,7 @@
 #include "session/grip.h"
 #include "session/well.h"
 
-enum { STEPS = 64 };
+enum { STEPS = 64, RADII = 9 };
 
 /* A place of the sharpest or the bluntest contact, on the softest or the hardest sample. */
 static nt_place corner(const nt_plan *plan, int blunt, int hard)
@@ -81,38 +81,105 @@ static double gradient_of(const nt_surface *surface)
     return x > 0.0 || y > 0.0 ? hypotenuse(x / surface->dx, y / surface->dy) : 0.0;
 }
 
-/* |dU/dp| of a corner at a gap, times the steepest change of p: of radius, modulus and work of adhesion. */
-static double uneven_at(const nt_plan *plan, const nt_place *place, const double steepest[3], double gap)
+/* What changes from place to place beside the height. */
+enum { RADIUS, MODULUS, WORK, CHANGES };
+
+/* |dU/dp| at a place, at most, from where it lets go to where a load presses it. */
+static double worth_of(const nt_plan *plan, const nt_place *place, int what, double load)
 {
     const nt_interaction_state attached = {.attached = 1};
-    double sum = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        nt_place changes = *place;
-        *(i == 0   ? &changes.radius.dx
-          : i == 1 ? &changes.youngs_modulus.dx
-                   : &changes.work_of_adhesion.dx) = steepest[i];
-        double sides[2];
-        nt_plan_sides(plan, &attached, &changes, gap, 0.0, sides);
-        sum += fabs(sides[0]);
+    const nt_well well = {.plan = plan, .place = *place};
+    const double deep = nt_well_gap_of_force(&well, load, 0.0), release = nt_plan_release_gap(plan, place);
+    const double last = isfinite(release) ? fmax(release, 0.0) : 0.0;
+    nt_place changes = *place;
+    double *const steps[CHANGES] = {&changes.radius.dx, &changes.youngs_modulus.dx, &changes.work_of_adhesion.dx};
+    double most = 0.0, sides[2];
+    *steps[what] = 1.0;
+    for (int k = 0; k <= STEPS; ++k) {
+        nt_plan_sides(plan, &attached, &changes, deep + k * (last - deep) / STEPS, 0.0, sides);
+        most = fmax(most, fabs(sides[0]));
     }
-    return sum;
+    return most;
+}
+
+static double worth_at_corners(const nt_plan *plan, int what, double load)
+{
+    double most = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        const nt_place place = corner(plan, i & 1, i >> 1);
+        most = fmax(most, worth_of(plan, &place, what, load));
+    }
+    return most;
+}
+
+/* |dU/dR| at some radii from the sharpest to the bluntest, on the softest or the hardest sample. */
+typedef struct worths {
+    double sharpest, blunter; /* radius [m], and the ratio from one to the next [-] */
+    double of[RADII];         /* [J/m] */
+} worths;
+
+static worths worths_of(const nt_plan *plan, double load)
+{
+    const double sharpest = plan->least.radius, ratio = fmax(plan->most.radius / sharpest, 1.0 + 1e-9);
+    worths found = {.sharpest = sharpest, .blunter = pow(ratio, 1.0 / (RADII - 1))};
+    for (int k = 0; k < RADII; ++k)
+        for (int hard = 0; hard < 2; ++hard) {
+            nt_place place = corner(plan, 0, hard);
+            place.radius.radius = sharpest * pow(found.blunter, k);
+            found.of[k] = fmax(found.of[k], worth_of(plan, &place, RADIUS, load));
+        }
+    return found;
+}
+
+/* Of all radii from one on: the largest of those that are tabled, the one below it, too. */
+static double worth_from(const worths *of, double radius)
+{
+    const double place = log(radius / of->sharpest) / log(of->blunter);
+    double most = 0.0;
+    for (int k = place > 1.0 ? (int)fmin(place, RADII - 1.0) : 0; k < RADII; ++k)
+        most = fmax(most, of->of[k]);
+    return most;
+}
+
+/* Cell by cell: no slope of a spline is above the differences of the coefficients that reach it, no value below the
+ * least of them. */
+static double uneven_radii(const nt_plan *plan, double load)
+{
+    const nt_surface *s = &plan->followed->ratio;
+    const worths worth = worths_of(plan, load);
+    const double highest = worth_from(&worth, worth.sharpest);
+    double most = 0.0;
+    for (long j = 0; j + 1 < s->ny; ++j)
+        for (long i = 0; i + 1 < s->nx; ++i) {
+            double x = 0.0, y = 0.0, least = HUGE_VAL;
+            for (long q = j > 0 ? j - 1 : 0; q <= j + 2 && q < s->ny; ++q)
+                for (long p = i > 0 ? i - 1 : 0; p <= i + 2 && p < s->nx; ++p) {
+                    const double *c = s->coefficients + q * s->nx + p;
+                    least = fmin(least, c[0]);
+                    x = p < i + 2 && p + 1 < s->nx ? fmax(x, fabs(c[1] - c[0])) : x;
+                    y = q < j + 2 && q + 1 < s->ny ? fmax(y, fabs(c[s->nx] - c[0])) : y;
+                }
+            const double steepest = x > 0.0 || y > 0.0 ? hypotenuse(x / s->dx, y / s->dy) : 0.0;
+            const double R = plan->contact.radius;
+            if (steepest * R * highest > most)
+                most = fmax(most, steepest * R * worth_from(&worth, least * R));
+        }
+    return most;
 }
 
 double nt_grip_uneven(const nt_plan *plan, double load)
 {
-    const nt_properties *properties = plan->properties;
-    const double steepest[] = {plan->followed ? plan->contact.radius * gradient_of(&plan->followed->ratio) : 0.0,
-                               properties ? gradient_of(&properties->youngs_modulus) : 0.0,
-                               properties ? gradient_of(&properties->work_of_adhesion) : 0.0};
-    double most = 0.0;
-    for (int i = 0; i < 4 && nt_plan_follows(plan); ++i) {
-        const nt_well well = {.plan = plan, .place = corner(plan, i & 1, i >> 1)};
-        const double deep = nt_well_gap_of_force(&well, load, 0.0), release = nt_plan_release_gap(plan, &well.place);
-        const double last = isfinite(release) ? fmax(release, 0.0) : 0.0;
-        for (int k = 0; k <= STEPS; ++k)
-            most = fmax(most, uneven_at(plan, &well.place, steepest, deep + k * (last - deep) / STEPS));
-    }
-    return most;
+    const nt_properties *of = plan->properties;
+    double sum = 0.0;
+    if (!nt_plan_follows(plan))
+        return 0.0;
+    if (plan->followed && plan->followed->ratio.coefficients)
+        sum += uneven_radii(plan, load);
+    if (of && of->youngs_modulus.coefficients)
+        sum += gradient_of(&of->youngs_modulus) * worth_at_corners(plan, MODULUS, load);
+    if (of && of->work_of_adhesion.coefficients)
+        sum += gradient_of(&of->work_of_adhesion) * worth_at_corners(plan, WORK, load);
+    return sum;
 }
 
 /* Second derivatives of a cubic spline are means of second differences of its coefficients: their largest sizes. */

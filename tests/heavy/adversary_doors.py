@@ -62,6 +62,12 @@ class Hand:
         self.session, self.plot, self.d = session, plot, d
         self.at = np.array([0.0, 0.0, float(session.core.master_start)])
         self.presses, self.roams = d.between(0.3, 1.0), d.between(0.0, 1.0)  # shares of its blows
+        self.tip, self.steep = np.zeros(2), None
+        if plot.surface is not None:
+            heights, pixel = plot.surface.topography.heights, plot.surface.topography.pixel_size
+            slope = np.hypot(*np.gradient(heights, pixel[1], pixel[0]))
+            row, column = np.unravel_index(int(np.argmax(slope)), slope.shape)
+            self.steep = np.array([column * pixel[0], row * pixel[1]])
 
     def follow(self, columns: Any) -> None:
         """Where the master is now."""
@@ -69,6 +75,7 @@ class Hand:
             sideways = [columns[name][-1] if name in columns else 0.0 for name in ("master_x", "master_y")]
             at = np.array([*sideways, columns["master_position"][-1]])
             self.at = np.where(np.isfinite(at), at, self.at)
+            self.tip = np.array([columns["x"][-1], columns["y"][-1]])
 
     def place(self) -> tuple[float, float]:
         """Where an input leads the tip: with a master of three axes nowhere."""
@@ -77,6 +84,8 @@ class Hand:
             return math.nan, math.nan
         if surface is None:
             return d.between(-1e-6, 1e-6), d.between(-1e-6, 1e-6)
+        if self.steep is not None and d.chance(0.5):
+            return float(self.steep[0]), float(self.steep[1])
         return d.between(0.0, surface.size[0]), d.between(0.0, surface.size[1])
 
     def down(self) -> Hold:
@@ -102,6 +111,8 @@ class Hand:
         down = 1.0 if d.chance(self.presses) else -1.0
         way = np.array([d.one((-1, 1)) * d.log(1e-9, 400e-9) if three and d.chance(self.roams) else 0.0
                         for _ in range(2)] + [down * d.log(1e-9, 200e-9)]) / gains.alpha_p  # fmt: skip
+        if three and self.steep is not None and d.chance(0.4):
+            way[:2] = (self.steep - self.tip) / gains.alpha_p
         end = 0.49 * self.plot.rig.master.travel
         to = np.clip(self.at + way, -end, end)
         quickest = float(np.linalg.norm(to - self.at)) / fastest(self.plot.rig)
