@@ -89,7 +89,8 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev --target test_fit_memory
 	@build/dev/tests/c/test_fit_memory every
-	@cmake --build --preset dev --target test_session_adversary test_session_mailbox
+	@cmake --build --preset dev --target test_session_adversary test_session_mailbox test_session_limits
+	@$(VENV)/python tests/heavy/limits.py
 	@build/dev/tests/c/test_session_mailbox 1000
 	@$(VENV)/python tests/heavy/guarantee.py
 

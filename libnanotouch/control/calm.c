@@ -4,8 +4,11 @@
  * At the operator's scale y = x_s/alpha_p, with k_r = alpha_f alpha_p k_eff and the read force r = k_r y + n:
  *   y = Hs (x_m + e_m) + D e_c + E e_y,   x_m = W (-(1 + K_f) r + K_f P e_g),
  * Hs the stage with its loop, W the master with the hand on it, P the low-pass of f_m; e_m, e_c, e_y, e_g the errors of
- * master, stage command, its read-out and gauge, n the probe's. With L = (1 + K_f) k_r Hs W and S = 1/(1 + L)
- *   r = S (k_r (Hs e_m + D e_c + E e_y) + n) + K_f/(1 + K_f) P L S e_g.
+ * master, stage command, its read-out and gauge, n the probe's. Behind a virtual coupling of stiffness K the tool q
+ * (x_m
+ * - r/K) leads the stage, and the spring K (x_m - tool) is felt instead of r. With G = q/(1 + q k_r Hs/K), the share of
+ * r that is felt, Z = k_r Hs where it is rigid and K (1 - G) behind a coupling, L = (1 + K_f) Z W and S = 1/(1 + L)
+ *   r = S (Z e_m + G (k_r (D e_c + E e_y) + n)) + K_f/(1 + K_f) P L S e_g.
  * A hand that holds still feels f = (1 + K_f) r - K_f P f: behind its own low-pass that is r behind one of 1 + K_f
  * times the corner. An oscillating push of a hand comes back from the contact times L S.
  *
@@ -51,17 +54,19 @@ static walk gains_at(const nt_sampled_loop *loop, const nt_gains *gains, const s
     const double K_f = gains->force_gain;
     const double k_r = sources[NT_RIPPLE_MASTER].unit;
     const nt_sampled_flow flow = nt_sampled_flow_at(loop, K_f, theta);
-    const double complex L = (1.0 + K_f) * k_r * flow.stage * flow.master, S = 1.0 / (1.0 + L);
+    const double complex share = flow.tool / (1.0 + flow.tool * k_r * loop->tool.give * flow.stage);
+    const double complex felt = loop->tool.give > 0.0 ? (1.0 - share) / loop->tool.give : k_r * flow.stage;
+    const double complex L = (1.0 + K_f) * felt * flow.master, S = 1.0 / (1.0 + L);
     const double c = lesser(1.0, (1.0 + K_f) * loop->force_filter);
     const double complex back = nt_complex(cos(theta), -sin(theta)), behind = c / (1.0 - (1.0 - c) * back) * S;
     const double complex answers[NT_RIPPLE_SOURCES] = {
-        k_r * flow.stage,
-        sources[NT_RIPPLE_STAGE_COMMAND].unit * flow.command,
-        sources[NT_RIPPLE_STAGE_READING].unit * flow.reading,
-        sources[NT_RIPPLE_PROBE].unit,
+        felt,
+        share * sources[NT_RIPPLE_STAGE_COMMAND].unit * flow.command,
+        share * sources[NT_RIPPLE_STAGE_READING].unit * flow.reading,
+        share * sources[NT_RIPPLE_PROBE].unit,
         K_f / (1.0 + K_f) * flow.low_pass * L,
     };
-    walk found = {.ringing = cabs(L * S), .back = cabs(1.0 / (S * (1.0 - flow.reading)) - 1.0)};
+    walk found = {.ringing = cabs(L * S), .back = cabs(flow.tool / (share * S * (1.0 - flow.reading)) - 1.0)};
     for (int i = 0; i < NT_RIPPLE_SOURCES; i++) {
         const double size = cabs(answers[i] * behind);
         found.squares[i] = found.highest[i] = size * size;
@@ -156,14 +161,14 @@ nt_calm nt_margins_calm(const nt_rig *rig, const nt_settings *settings, double c
         calm.rule = "ripple";
         return calm;
     }
-    list(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness, sources);
+    list(&equivalent.rig, &equivalent.gains, contact_stiffness, sources);
     const walk found = integrate(&loop, &equivalent.gains, sources);
     const double thrown = equivalent.gains.alpha_p * sources[NT_RIPPLE_MASTER].step;
     sources[NT_RIPPLE_STAGE_COMMAND].rings =
         found.back >= BACK || thrown < THROWN * sources[NT_RIPPLE_STAGE_COMMAND].step;
     add_up(sources, &found, &calm);
     calm.ringing = found.ringing;
-    const nt_margins margins = nt_margins_compute(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness);
+    const nt_margins margins = nt_margins_compute(&equivalent.rig, &equivalent.gains, contact_stiffness);
     const double step = equivalent.gains.alpha_p * equivalent.rig.master.resolution / settings->limits.stage_speed;
     const double slew = fmax(0.0, step - 1.0 / equivalent.gains.rate);
     calm.slewing = margins.margin * margins.loop_delay / (margins.loop_delay + slew);

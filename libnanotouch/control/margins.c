@@ -65,10 +65,31 @@ static double reflected_stiffness(const nt_rig *rig, const nt_gains *gains, doub
     return gains->alpha_f * gains->alpha_p * k_c / (1.0 + k_c / contact_stiffness);
 }
 
+/* Who may hold the master of a loop with a virtual coupling: the hand of the rig, none, and the weight of a handle that
+ * was let go. A hand that holds it still has a limit of its own (tool_stiffness). Without a coupling the rig's alone.
+ */
+static nt_sampled_limits limits_of(const nt_sampled_loop *loop, double force_gain, double reflected_stiffness)
+{
+    static const nt_hand others[] = {{.mass = 0.0}, {.mass = NT_RELEASED_HANDLE}};
+    nt_sampled_limits least = nt_sampled_limits_of(loop, force_gain, reflected_stiffness);
+    for (size_t i = 0; i < sizeof others / sizeof others[0] && loop->tool.give > 0.0; i++) {
+        const nt_sampled_loop held = nt_sampled_loop_held(loop, &others[i]);
+        const nt_sampled_limits found = nt_sampled_limits_of(&held, force_gain, reflected_stiffness);
+        least.force_gain = fmin(least.force_gain, found.force_gain);
+        if (found.loop_stiffness < least.loop_stiffness) {
+            least.loop_stiffness = found.loop_stiffness;
+            least.angle = found.angle;
+        }
+    }
+    return least;
+}
+
+/* What the loop amounts to; contact_stiffness: as it is. A coupling softens it where rules of thumb see it. */
 static nt_margins compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
                           const nt_sampled_loop *loop)
 {
-    const double k_r = reflected_stiffness(rig, gains, contact_stiffness), K_f = gains->force_gain;
+    const double K_f = gains->force_gain, whole = reflected_stiffness(rig, gains, contact_stiffness);
+    const double softens = 1.0 / (1.0 + whole * loop->tool.give), k_r = whole * softens;
     const double step = fmax(rig->stage.command_resolution, gains->alpha_p * rig->master.resolution);
     nt_margins margins = {
         .loop_stiffness = (1.0 + K_f) * k_r,
@@ -88,11 +109,12 @@ static nt_margins compute(const nt_rig *rig, const nt_gains *gains, double conta
     const double hand_hop = hop_delay(rig, gains) + 2.0 * nt_sampled_master_hold(rig, gains);
     const double height = rig->master.damping / (hand_hop * gains->height_stiffness);
     margins.height_margin = rig->master.motor ? fmin(1.0 / servo, height) : 1.0 / servo;
-    const nt_sampled_limits limits = nt_sampled_limits_of(loop, K_f, k_r);
-    margins.exact_limit = limits.loop_stiffness;
+    const nt_sampled_limits limits = limits_of(loop, K_f, whole);
+    margins.exact_limit = limits.loop_stiffness * softens;
     margins.exact_frequency = limits.angle / (2.0 * NT_PI) * gains->rate;
     margins.force_gain_limit = limits.force_gain;
     margins.integral_limit = limits.stage_gain * gains->rate;
+    margins.coupling_margin = limits.tool_stiffness / whole;
     return margins;
 }
 
@@ -110,7 +132,7 @@ double nt_margins_loop_delay(const nt_rig *rig, const nt_gains *gains)
 }
 
 /* In touch; rig and gains are those that the law amounts to. */
-static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, const nt_gains *gains, double coupling)
+static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, const nt_gains *gains)
 {
     const nt_verdict verdicts[] = {
         NT_VERDICT(margins->margin, "R1 contact"),
@@ -119,7 +141,7 @@ static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, cons
                    "exact K_f"),
         NT_VERDICT(rig->master.max_force / margins->quantisation_step, "R4 steps"),
         NT_VERDICT(rig->master.max_force / (3.0 * margins->force_noise), "R5 noise"),
-        NT_VERDICT(coupling, "virtual coupling"),
+        NT_VERDICT(margins->coupling_margin, "virtual coupling"),
     };
     enum { VERDICTS = (int)(sizeof verdicts / sizeof verdicts[0]) };
     nt_verdict least = verdicts[0];
@@ -130,11 +152,11 @@ static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, cons
 }
 
 /* Without a motor no loop closes through the hand: a virtual coupling and the stage's own loop are left. */
-static nt_verdict judge_without_motor(const nt_margins *margins, const nt_gains *gains, double coupling)
+static nt_verdict judge_without_motor(const nt_margins *margins, const nt_gains *gains)
 {
-    const nt_verdict coupled = NT_VERDICT(coupling, "virtual coupling");
+    const nt_verdict coupled = NT_VERDICT(margins->coupling_margin, "virtual coupling");
     const nt_verdict stage = NT_VERDICT(margins->integral_limit / gains->stage_integral, "stage integral");
-    const nt_verdict least = gains->stage_integral > 0.0 && !(stage.margin >= coupling) ? stage : coupled;
+    const nt_verdict least = gains->stage_integral > 0.0 && !(stage.margin >= coupled.margin) ? stage : coupled;
     return isinf(least.margin) ? (nt_verdict)NT_VERDICT(INFINITY, "none: no loop is closed") : least;
 }
 
@@ -152,19 +174,16 @@ nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, d
 {
     const nt_servo_equivalent equivalent = nt_servo_equivalent_of(rig, settings, contact_stiffness);
     const nt_sampled_loop loop = nt_sampled_loop_of(&equivalent.rig, settings, &equivalent.gains);
-    *margins = compute(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness, &loop);
+    *margins = compute(&equivalent.rig, &equivalent.gains, contact_stiffness, &loop);
     if (mode == NT_MODE_CURVE)
         return (nt_verdict)NT_VERDICT(INFINITY, "none: no loop is closed");
     if (mode == NT_MODE_TAPPING)
         return judge_tapping(margins, &equivalent.rig, settings, &equivalent.gains);
     if (mode != NT_MODE_TOUCH)
         return (nt_verdict)NT_VERDICT(margins->height_margin, "height servo");
-    const double coupling = nt_servo_coupling_margin(&equivalent.rig, &equivalent.gains, contact_stiffness,
-                                                     hop_delay(&equivalent.rig, &equivalent.gains) +
-                                                         slave_delay(&equivalent.rig, &equivalent.gains));
     const nt_verdict stage = NT_VERDICT(nt_servo_stage_margin(rig, settings), "stage of Eq. 17");
-    const nt_verdict touch = rig->master.motor ? judge_touch(margins, &equivalent.rig, &equivalent.gains, coupling)
-                                               : judge_without_motor(margins, &equivalent.gains, coupling);
+    const nt_verdict touch = rig->master.motor ? judge_touch(margins, &equivalent.rig, &equivalent.gains)
+                                               : judge_without_motor(margins, &equivalent.gains);
     return stage.margin >= touch.margin ? touch : stage;
 }
 

@@ -78,21 +78,41 @@ double nt_sampled_master_hold(const nt_rig *rig, const nt_gains *gains)
     return rig->master.rate > 0.0 ? fmax(0.0, 1.0 / rig->master.rate - 1.0 / gains->rate) : 0.0;
 }
 
+static nt_sampled_tool tool_of(const nt_gains *gains)
+{
+    const double K = gains->coupling_stiffness, drag = gains->coupling_damping * gains->rate;
+    return K > 0.0 ? (nt_sampled_tool){1.0 / K, drag / (K + drag), K * drag / (K + drag)} : (nt_sampled_tool){.give = 0.0};
+}
+
 nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains)
 {
     const double T = 1.0 / gains->rate, dead_time = nt_sampled_dead_time(rig, gains);
     const double wn = 2.0 * NT_PI * rig->stage.resonance;
+    const double hand_dead_time = dead_time + 2.0 * nt_sampled_master_hold(rig, gains);
     const nt_hand *hand = &rig->hand;
     nt_sampled_loop loop = {
         .master = nt_sampled_make(rig->master.mass + hand->mass, rig->master.damping + hand->damping, hand->stiffness,
-                                  T, dead_time + 2.0 * nt_sampled_master_hold(rig, gains)),
+                                  T, hand_dead_time),
+        .hand_dead_time = hand_dead_time,
         .stage = nt_sampled_make(1.0 / (wn * wn), 1.0 / (wn * rig->stage.quality), 1.0, T, dead_time),
         .stage_loop = nt_stage_loop_make(&rig->stage, gains),
         .hand = *hand,
+        .tool = tool_of(gains),
         .force_filter = -expm1(-2.0 * NT_PI * gains->force_filter * T),
     };
     loop.notched = nt_stage_loop_notches(&rig->stage, gains);
     return loop;
+}
+
+nt_sampled_loop nt_sampled_loop_held(const nt_sampled_loop *loop, const nt_hand *hand)
+{
+    const nt_sampled *own = &loop->master;
+    nt_sampled_loop held = *loop;
+    held.hand = *hand;
+    held.master =
+        nt_sampled_make(own->mass - loop->hand.mass + hand->mass, own->damping - loop->hand.damping + hand->damping,
+                        hand->stiffness, own->period, loop->hand_dead_time);
+    return held;
 }
 
 nt_sampled_loop nt_sampled_loop_of(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains)
@@ -137,16 +157,36 @@ nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta)
     const double complex low_pass = nt_sampled_low_pass(loop, theta);
     const double complex drive =
         loop->proportional + loop->derivative / loop->stage.period * less * back_by(theta); /* of Eq. 17 */
+    const nt_sampled_tool *tool = &loop->tool;
     nt_sampled_terms terms = {.stage = less * below,
                               .tracking = z * above,
+                              .reach = (less + loop->stage_loop.integral * z) * above,
                               .master = master.determinant,
+                              .way = master.position,
                               .finger = low_pass * reaction,
-                              .contact = (less + loop->stage_loop.integral * z) * above * master.position};
+                              .keeps = 1.0 - tool->kept * back_by(theta),
+                              .drags = tool->drag * less * back_by(theta)};
     if (loop->printed) {
         terms.tracking = less * drive * above;
-        terms.contact = less * drive * above * master.position;
+        terms.reach = less * drive * above;
     }
     return terms;
+}
+
+double complex nt_sampled_servo(const nt_sampled_loop *loop, const nt_sampled_terms *terms)
+{
+    return terms->stage + (loop->printed ? 1.0 : loop->stage_loop.integral) * terms->tracking;
+}
+
+double complex nt_sampled_air(const nt_sampled_terms *terms, double force_gain)
+{
+    return (terms->master - force_gain * terms->finger) * terms->keeps + (1.0 + force_gain) * terms->drags * terms->way;
+}
+
+double complex nt_sampled_touch(const nt_sampled_loop *loop, const nt_sampled_terms *terms, double force_gain)
+{
+    const double complex gives = (terms->master - force_gain * terms->finger) * loop->tool.give;
+    return (1.0 - loop->tool.kept) * terms->reach * (gives + (1.0 + force_gain) * terms->way);
 }
 
 double complex nt_sampled_stage(const nt_sampled_loop *loop, double theta)
@@ -164,15 +204,16 @@ double complex nt_sampled_stage(const nt_sampled_loop *loop, double theta)
 nt_sampled_flow nt_sampled_flow_at(const nt_sampled_loop *loop, double force_gain, double theta)
 {
     const nt_sampled_terms terms = nt_sampled_terms_at(loop, theta);
-    const nt_sampled_value stage = nt_sampled_at(&loop->stage, theta), master = nt_sampled_at(&loop->master, theta);
+    const nt_sampled_value stage = nt_sampled_at(&loop->stage, theta);
     const double gain = loop->printed ? 1.0 : loop->stage_loop.integral;
-    const double complex servo = terms.stage + gain * terms.tracking; /* 1 + G I over less and below */
+    const double complex servo = nt_sampled_servo(loop, &terms); /* 1 + G I over less and below */
     return (nt_sampled_flow){
         .stage = nt_sampled_stage(loop, theta),
         .command = stage.position / stage.determinant * terms.stage / servo,
         .reading = gain * terms.tracking / servo,
-        .master = master.position / (terms.master - force_gain * terms.finger),
+        .master = terms.way / (terms.master - force_gain * terms.finger),
         .low_pass = nt_sampled_low_pass(loop, theta),
+        .tool = (1.0 - loop->tool.kept) / terms.keeps,
     };
 }
 
@@ -183,6 +224,7 @@ static double slowest(const nt_sampled_loop *loop)
     double corner = fmin(1.0, sqrt(stage->stiffness / stage->mass) * stage->period);
     corner = fmin(corner, stage->stiffness / stage->damping * stage->period);
     corner = fmin(corner, master->damping / master->mass * master->period);
+    corner = fmin(corner, 1.0 - loop->tool.kept);
     if (master->stiffness > 0.0) {
         corner = fmin(corner, master->stiffness / master->damping * master->period);
         corner = fmin(corner, sqrt(master->stiffness / master->mass) * master->period);

@@ -54,11 +54,3 @@ double nt_servo_ringing(const nt_servo_equivalent *equivalent, double speed)
     const double all = split > 0.0 ? -2.0 / expm1(-NT_PI * zeta / split) - 2.0 * zeta : 0.0;
     return greater(4.0 / NT_PI * gain, all) * speed / (2.0 * NT_PI * equivalent->rig.stage.resonance);
 }
-
-double nt_servo_coupling_margin(const nt_rig *rig, const nt_gains *gains, double contact_stiffness, double delay)
-{
-    if (gains->coupling_stiffness == 0.0)
-        return INFINITY;
-    const double k_r = reflected_stiffness(rig, gains, contact_stiffness);
-    return greater(gains->coupling_stiffness / k_r, gains->coupling_damping / (k_r * delay));
-}

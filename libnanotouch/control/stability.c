@@ -10,7 +10,16 @@
 #include "nanotouch/material.h"
 
 /* Gains, each with the others as they are given. */
-typedef enum gain { STAGE_GAIN, FORCE_GAIN_IN_AIR, FORCE_GAIN_IN_CONTACT, KAPPA_WITHOUT_GAIN, KAPPA, GAINS } gain;
+typedef enum gain {
+    STAGE_GAIN,
+    DRAG_IN_AIR, /* of the virtual tool, without K_f */
+    FORCE_GAIN_IN_AIR,
+    FORCE_GAIN_IN_CONTACT,
+    STIFFNESS_WITHOUT_GAIN,
+    STIFFNESS,
+    STIFFNESS_HELD, /* the master held still: tool and stage alone */
+    GAINS
+} gain;
 
 typedef struct asked {
     const nt_sampled_loop *loop;
@@ -23,34 +32,37 @@ typedef struct crossing {
     double angle; /* where */
 } crossing;
 
-/* g of the stage's own loop. */
-static double stage_gain(const nt_sampled_loop *loop)
-{
-    return loop->printed ? 1.0 : loop->stage_loop.integral;
-}
-
 /* -A conj(B), of the phase of g, and |g|. */
 static double complex phasor(const asked *question, gain which, const nt_sampled_terms *terms, double *size)
 {
-    const double g = stage_gain(question->loop), k = question->reflected_stiffness;
-    const double complex servo = terms->stage + g * terms->tracking;
-    double complex A, B;
+    const nt_sampled_loop *loop = question->loop;
+    const double k = question->reflected_stiffness, K_f = which == STIFFNESS ? question->force_gain : 0.0;
+    const double complex servo = nt_sampled_servo(loop, terms);
+    double complex A = 0.0, B = 0.0;
     switch (which) {
     case STAGE_GAIN:
         A = terms->stage;
         B = terms->tracking;
         break;
+    case DRAG_IN_AIR:
+        A = terms->master * terms->keeps;
+        B = terms->drags * terms->way;
+        break;
     case FORCE_GAIN_IN_AIR:
-        A = terms->master;
-        B = -terms->finger;
+        A = nt_sampled_air(terms, 0.0);
+        B = nt_sampled_air(terms, 1.0) - A;
         break;
     case FORCE_GAIN_IN_CONTACT:
-        A = servo * terms->master + k * terms->contact;
-        B = k * terms->contact - servo * terms->finger;
+        A = servo * nt_sampled_air(terms, 0.0) + k * nt_sampled_touch(loop, terms, 0.0);
+        B = servo * nt_sampled_air(terms, 1.0) + k * nt_sampled_touch(loop, terms, 1.0) - A;
+        break;
+    case STIFFNESS_HELD:
+        A = servo * terms->keeps;
+        B = (1.0 - loop->tool.kept) * loop->tool.give * terms->reach;
         break;
     default:
-        A = servo * (terms->master - (which == KAPPA ? question->force_gain : 0.0) * terms->finger);
-        B = terms->contact;
+        A = servo * nt_sampled_air(terms, K_f);
+        B = nt_sampled_touch(loop, terms, K_f);
     }
     const double a = cabs(A), b = cabs(B);
     *size = a / b;
@@ -98,7 +110,7 @@ nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force
     const int is_closed = loop->master.damping > 0.0 && loop->master.whole <= NT_SAMPLED_LONGEST;
     nt_sampled_loop walked = *loop;
     if (loop->stage.whole > NT_SAMPLED_LONGEST)
-        return (nt_sampled_limits){0.0, NAN, 0.0, 0.0};
+        return (nt_sampled_limits){0.0, NAN, 0.0, 0.0, 0.0};
     if (!is_closed) { /* the stage's own loop does not ask the master */
         walked.master.damping = walked.master.mass / walked.master.period;
         walked.master.whole = walked.stage.whole;
@@ -108,16 +120,17 @@ nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force
     for (int which = 0; which < GAINS; which++)
         found[which] = (crossing){INFINITY, NAN};
     march(&question, found);
-    nt_sampled_limits limits = {0.0, NAN, 0.0, found[STAGE_GAIN].limit};
-    if (!is_closed)
+    const double servo = loop->printed ? 1.0 : loop->stage_loop.integral;
+    nt_sampled_limits limits = {0.0, NAN, found[STIFFNESS_HELD].limit, 0.0, found[STAGE_GAIN].limit};
+    if (servo >= found[STAGE_GAIN].limit)
+        limits.tool_stiffness = 0.0;
+    if (!is_closed || servo >= found[STAGE_GAIN].limit || !(found[DRAG_IN_AIR].limit > 1.0))
         return limits; /* nothing takes out what the holds put in, or it comes too late */
-    if (stage_gain(loop) >= found[STAGE_GAIN].limit)
-        return limits;
     if (force_gain < found[FORCE_GAIN_IN_AIR].limit) {
-        limits.loop_stiffness = found[KAPPA].limit;
-        limits.angle = found[KAPPA].angle;
+        limits.loop_stiffness = (1.0 + force_gain) * found[STIFFNESS].limit;
+        limits.angle = found[STIFFNESS].angle;
     }
-    if (reflected_stiffness < found[KAPPA_WITHOUT_GAIN].limit)
+    if (reflected_stiffness < found[STIFFNESS_WITHOUT_GAIN].limit)
         limits.force_gain = fmin(found[FORCE_GAIN_IN_AIR].limit, found[FORCE_GAIN_IN_CONTACT].limit);
     return limits;
 }

@@ -15,7 +15,7 @@ static nt_verdict judge_own(const nt_rig *rig, const nt_settings *settings, doub
     if (status == NT_OK)
         return verdict;
     const double height = margins->height_margin;
-    *margins = (nt_margins){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+    *margins = (nt_margins){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     margins->height_margin = height;
     return mode == NT_MODE_TOUCH ? (nt_verdict)NT_VERDICT(NAN, "own law, of no kind that can be judged") : verdict;
 }

@@ -140,8 +140,8 @@ def test_a_hand_of_three_axes_is_judged_and_feels_what_the_lever_shows() -> None
     assert found.coupled_margin <= min(found.margin, along_z.margin)
     assert felt.margins().least == min(found.least, along_z.least)
     settings = felt.settings.copy()
-    settings.gains.alpha_f *= found.least  # R1 of all axes is then 1, below the 1.5 that is asked for
-    with pytest.raises(nt.errors.InvalidValue, match=r"R1 of all axes"):
+    settings.gains.alpha_f *= found.least  # that of all axes is then 1, below the 1.5 that is asked for
+    with pytest.raises(nt.errors.InvalidValue, match=r"all axes"):
         nt.Session(scene=scene, rig=felt.rig, settings=settings, seed=1)
     assert 0.0 < felt.guarantee().lateral_force < np.inf
     assert "sideways at most" in str(felt.guarantee())

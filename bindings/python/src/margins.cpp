@@ -25,6 +25,7 @@ static py::dict margins(const Rig &rig, const Settings &settings, double stiffne
     out["exact_frequency"] = m.exact_frequency;
     out["force_gain_limit"] = m.force_gain_limit;
     out["integral_limit"] = m.integral_limit;
+    out["coupling_margin"] = m.coupling_margin;
     out["bandwidth"] = nt_margins_bandwidth(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness);
     out["least"] = verdict.margin;
     out["rule"] = verdict.rule;

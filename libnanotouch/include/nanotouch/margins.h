@@ -25,9 +25,12 @@ typedef struct nt_margins {
     double exact_limit;       /* kappa at which the sampled loop, hand and filters included, is unstable [N/m] */
     double exact_frequency;   /* at which it then oscillates [Hz]; NaN if exact_limit is infinite */
     double force_gain_limit;  /* K_f at which it is, in air or at the stiffest contact, whichever comes first [-] */
-    double integral_limit; /* integral gain at which the stage's own loop oscillates, whoever holds the master [1/s] */
+    double integral_limit;  /* integral gain at which the stage's own loop oscillates, whoever holds the master [1/s] */
+    double coupling_margin; /* of tool and stage behind a virtual coupling, the master held still; exact [-] */
 } nt_margins;
-/* contact_stiffness: k of the stiffest contact [N/m]; k_eff = k k_c/(k + k_c). */
+/* contact_stiffness: k of the stiffest contact [N/m]; k_eff = k k_c/(k + k_c). A virtual coupling softens it: kappa
+ * counts that, and the exact limits hold for the rig's hand, for none, and for a released handle of 0.1 kg; exact_limit
+ * over loop_stiffness is then by how much alpha_f may grow. */
 NT_API nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness);
 /* loop_delay alone, a thousand times cheaper [s]. */
 NT_API double nt_margins_loop_delay(const nt_rig *rig, const nt_gains *gains);
@@ -71,12 +74,13 @@ typedef struct nt_sideways_margins {
     double exact_limit;     /* kappa_l at which the sampled loop over a spring oscillates, hand included [N/m] */
     double exact_frequency; /* at which it does [Hz] */
     double coupling;        /* of z into x and y and back, over the mean of both alone [-] */
-    double coupled_margin;  /* R1 of all axes together; never above those of each [-] */
+    double coupled_margin;  /* all axes together: R1, or the exact limit while it sticks and while it slips, whichever
+                               is less; never above those of each [-] */
 } nt_sideways_margins;
 /* along_z: the margins of the same settings and stiffness k [N/m] (nt_margins_judge). */
 NT_API nt_sideways_margins nt_margins_sideways(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
                                                const nt_sideways_contact *contact, const nt_margins *along_z);
-/* The least of margin, exact limit and coupled margin: "R1 sideways", "exact sideways", "R1 of all axes". */
+/* The least of margin, exact limit and coupled margin: "R1 sideways", "exact sideways", "all axes". */
 NT_API nt_verdict nt_verdict_sideways(const nt_sideways_margins *margins);
 /* By how much more of its force along z a master of one axis feels, by its projection: a factor on alpha_f, >= 1. */
 NT_API double nt_margins_projected(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,

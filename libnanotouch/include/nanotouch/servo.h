@@ -53,8 +53,8 @@ NT_API nt_control_law nt_control_law_of(const nt_control *control);
 /* What stability rules and observer have to put into their formulas for a law (docs/control.md): K_f is 0 for the
  * impedance law, the damping of the master is what feed-forward leaves of it, the paper's law and samples too few for a
  * notch leave the stage's resonance bare, alpha_f is that of the region with the largest, and a virtual coupling
- * softens the contact. The margins of a loop are those of nt_margins_compute for this rig, these gains and this
- * stiffness. */
+ * softens the contact, as it is felt. The margins of a loop are those of nt_margins_compute for this rig, these gains
+ * and the contact's own stiffness. */
 typedef struct nt_servo_equivalent {
     nt_rig rig;
     nt_gains gains;
@@ -65,10 +65,6 @@ NT_API nt_servo_equivalent nt_servo_equivalent_of(const nt_rig *rig, const nt_se
                                                   double contact_stiffness);
 /* Largest amplitude at which the stage rings, whose command goes to and fro at a limit of speed [m/s] to [m]. */
 NT_API double nt_servo_ringing(const nt_servo_equivalent *equivalent, double speed);
-/* Of the loop that the virtual tool closes by itself (force, tool, stage), over a delay [s]: below 1 it oscillates, and
- * no observer sees it; infinite without a coupling. */
-NT_API double nt_servo_coupling_margin(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
-                                       double delay);
 /* By what K_p and K_v of the paper's law may be multiplied until the stage oscillates by itself; infinite for the other
  * laws. Some milliseconds. */
 NT_API double nt_servo_stage_margin(const nt_rig *rig, const nt_settings *settings);

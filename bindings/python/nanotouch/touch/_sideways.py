@@ -34,7 +34,7 @@ class Sideways(NamedTuple):
     coupling: float
     """of z into x and y and back, over the mean of both alone; 0: they do not know of each other"""
     coupled_margin: float
-    """R1 of all axes together, never above those of each"""
+    """all axes together: R1, or the exact limit while it sticks and while it slips; never above those of each"""
     least: float
     """the smallest of the three; 1 is the limit"""
     rule: str

@@ -64,6 +64,8 @@ class Margins(NamedTuple):
     """K_f at which it is, in air or at the contact, whichever comes first"""
     integral_limit: float
     """integral gain at which the stage's own loop oscillates, whoever holds the master [1/s]"""
+    coupling_margin: float
+    """of tool and stage behind a virtual coupling, the master held still; exact; infinite without a coupling"""
     bandwidth: float
     """up to here the hand feels the contact's stiffness within 3 dB [Hz]"""
     passive_up_to: float
