@@ -13,7 +13,7 @@ packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev 
 extras=all
 if [ "$profile" = test ] || [ "$profile" = sanitize ] || [ "$profile" = mutate ]; then
   packages="$packages libcmocka-dev libiio-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-none-eabi libnewlib-arm-none-eabi
-    gcc-mingw-w64-x86-64-posix qemu-user qemu-system-arm"
+    gcc-mingw-w64-x86-64-posix qemu-user qemu-system-arm valgrind"
   extras=all,test
   [ "$profile" = test ] || packages="$packages clang libclang-rt-dev"
   [ "$profile" != mutate ] || extras=all,test,mutate

@@ -187,14 +187,15 @@ static void contact_of(const growth *g, const nt_sideways_contact *contact, doub
     J[1][1] = g->vertical;
 }
 
-/* On the steepest slope and on gentler ones; without friction it is smooth there. */
+/* On the steepest slope and on gentler ones. */
 static double exact_together(const axes *of, const growth *g, const nt_sideways_contact *contact, double scale)
 {
     double limit = HUGE_VAL;
-    const int kinds = contact->stick > 0.0 || contact->grip > 0.0 ? CONTACTS : 1;
-    for (int i = 0; i < SLOPES * kinds; ++i) {
+    const int kinds = contact->stick > 0.0 || contact->grip > 0.0 ? CONTACTS : 1; /* without friction: smooth */
+    const int slopes = contact->slope > 0.0 ? SLOPES : 1;
+    for (int i = 0; i < slopes * kinds; ++i) {
         double J[2][2];
-        contact_of(g, contact, contact->slope * (1 + i / kinds) / SLOPES, i % kinds, J);
+        contact_of(g, contact, contact->slope * (1 + i / kinds) / slopes, i % kinds, J);
         limit = fmin(limit, exact_of(of, J));
     }
     return limit / scale;
