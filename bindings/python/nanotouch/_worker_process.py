@@ -23,6 +23,10 @@ from .errors import Error
 
 _FOR_IMAGES = ("cv2", "h5py", "scipy.io", "tifffile", "igor2.binarywave", "SurfaceTopography.IO")
 _OWN = (".gsf", ".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series", ".mcap", ".part", ".nc", ".topostats")
+_NUMPY: tuple[str, ...] = ("numpy.ma",)
+_NEEDED = dict.fromkeys((".spm", ".di", ".000", ".001", ".002", ".003", ".sxm", ".stp", ".top"), _NUMPY)
+_NEEDED[".ibw"] = (*_NUMPY, "igor2.binarywave")
+"""what our own readers of formats need whose names others use too; what else is wanted is imported by the child"""
 _SPAN = 1 << 16  # of a request [byte]
 _BESIDE = 64  # files of the same stem
 
@@ -88,6 +92,8 @@ def _prepare(job: str, file: Path) -> None:
         wanted = ("mcap.stream_reader", "zstandard")
     elif job == "maps.read":
         wanted = ("xarray", "h5netcdf")
+    elif ending in _NEEDED:
+        wanted = _NEEDED[ending]
     elif ending not in _OWN:
         wanted = _FOR_IMAGES if job.startswith("images.") else ("h5py", "afmformats")
     for name in wanted:
