@@ -172,6 +172,8 @@ set(nanotouch_sources_control
     control/margins_sideways.c
     control/modes.c
     control/motor.c
+    control/motor_bound.c
+    control/observe.c
     control/own_law.c
     control/paper_stage.c
     control/passivity.c

@@ -45,7 +45,7 @@ USES = {
 HEADERS = {
     **dict.fromkeys(["status", "types", "material", "rig", "field", "version", "random"], "core"),
     **dict.fromkeys(["geometry", "maugis_bank", "maugis_table"], "contact"),
-    **dict.fromkeys(["guarantee", "margins", "passivity", "preflight", "scaling", "servo"], "control"),
+    **dict.fromkeys(["guarantee", "margins", "motor_bound", "passivity", "preflight", "scaling", "servo"], "control"),
     **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
     **dict.fromkeys(["plan", "interaction", "terms", "force_table"], "scene"),
     **dict.fromkeys(["balance", "flow", "steady", "tapping"], "scan"),

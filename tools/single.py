@@ -31,7 +31,7 @@ HEADERS = [
     "touch",
     "force_table",
 ]
-PRIVATE = ["follow", "lift", "modes", "motor", "sideways", "stuck"]
+PRIVATE = ["follow", "lift", "modes", "motor", "observe", "sideways", "stuck"]
 SOURCES = [
     "control/motor",
     "control/laws",
@@ -44,6 +44,7 @@ SOURCES = [
     "control/supervisor",
     "control/modes",
     "control/sideways",
+    "control/observe",
     "control/touch",
     "control/requests",
     "scene/force_table",

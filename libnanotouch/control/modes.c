@@ -5,10 +5,9 @@
 #include <math.h>
 
 #include "control/motor.h"
+#include "control/observe.h"
 #include "core/clamp.h"
 
-#define FADE_TIME 0.05  /* uncoupled, the force is gone after this [s] */
-#define FADED 1e-6      /* engaged by no more than this it is gone: rounding shall not decide in which tick */
 #define FOUND_SHARE 0.9 /* of the set-point: the surface is found */
 
 /* Moves the reference towards `wanted`, no faster than the stage may go and inside its travel; 1 if it is there. */
@@ -124,7 +123,7 @@ static double run_curve(const nt_touch *touch, nt_touch_state *state)
 static double leave(const nt_touch *touch, nt_touch_state *state)
 {
     const double force = nt_mode_release(touch, state);
-    if (state->engaged > 0.0)
+    if (state->fade.left > 0.0)
         return force;
     state->mode = state->wanted_mode;
     state->phase = NT_PHASE_DOWN;
@@ -156,12 +155,8 @@ double nt_mode_release(const nt_touch *touch, nt_touch_state *state)
     const nt_signals *signals = &state->signals;
     state->stretch = 0.0;
     state->offset = state->reference - signals->scaling.alpha_p * signals->master_position;
-    const nt_sum engaged = state->engaged - touch->period / FADE_TIME;
-    if (!(engaged > FADED))
-        return state->engaged = state->coupled_force = 0.0;
-    state->coupled_force *= engaged / state->engaged; /* linear in time */
-    state->engaged = engaged;
-    return nt_motor_fade(&touch->rig.master, state->coupled_force, signals->smooth_speed);
+    (void)nt_motor_fade(touch, state);
+    return nt_motor_faded(touch, state, NT_Z, nt_observe_speed(state));
 }
 
 double nt_mode_stop(const nt_touch *touch, nt_touch_state *state, double distance)

@@ -107,22 +107,22 @@ void nt_sideways_move(const nt_touch *touch, nt_touch_state *state)
     state->target_time = greater(0.0, left - touch->period);
 }
 
+/* While a law speaks; where none does along x and y, damping is left. */
+static double wanted_of(const nt_touch *touch, const nt_touch_state *state, int axis)
+{
+    const double force = state->mode == NT_MODE_TOUCH ? state->signals.scaling.alpha_f * state->lateral_force[axis] : 0.0;
+    return felt_of(state, axis, force) +
+           nt_passivity_damping_force(&touch->passivity_sideways, &state->passivity_sideways[axis]);
+}
+
 void nt_sideways_drive(const nt_touch *touch, nt_touch_state *state)
 {
     if (!touch->feels_sideways)
         return;
-    const int coupled = state->supervisor.state == NT_RUN && state->mode == NT_MODE_TOUCH &&
-                        state->wanted_mode == NT_MODE_TOUCH && !state->clutch_open;
     for (int i = NT_X; i < NT_Z; ++i) {
-        if (coupled)
-            state->coupled_sideways[i] = state->signals.scaling.alpha_f * state->lateral_force[i];
-        else if (!(state->engaged > 0.0))
-            state->coupled_sideways[i] = 0.0;
-        const double felt = felt_of(state, i, state->coupled_sideways[i]), speed = state->hand_speed[i];
-        const int fades = !coupled && felt != 0.0;
-        const double damped =
-            felt + nt_passivity_damping_force(&touch->passivity_sideways, &state->passivity_sideways[i]);
-        const double wanted = fades ? nt_motor_fade(&touch->rig.master, felt, speed) : damped;
+        const double speed = isfinite(state->hand_at[i]) ? state->hand_speed[i] : 0.0;
+        const double wanted =
+            state->fade.left == 1.0 ? wanted_of(touch, state, i) : nt_motor_faded(touch, state, i, speed);
         state->command.motor_force[i] =
             nt_motor_limit(&touch->settings.limits, touch->motor_step, state->command.motor_force[i], wanted, speed);
     }

@@ -58,19 +58,35 @@ static int shows_tapping(const nt_supervisor *supervisor, const nt_sample *sampl
     return most == 0.0 || (is_within(sample->amplitude, 2.0 * most) && isfinite(sample->lag));
 }
 
+static uint32_t bit(int holds, uint32_t channel)
+{
+    return holds ? channel : 0u;
+}
+
 /* Numbers that no sensor of this rig can give (twice its range) are as bad as no numbers. The deflection is judged by
  * its force. */
-static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
+static uint32_t seen_of_master(const nt_supervisor *supervisor, const nt_sample *sample)
 {
     const double gauge = supervisor->gauge_range;
-    return !(sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST)) &&
-           is_within(sample->master_position[NT_Z], supervisor->master_range) &&
-           (!supervisor->leads_sideways || is_within_sideways(supervisor, sample)) &&
-           (gauge == 0.0 || is_within(sample->operator_force[NT_Z], 2.0 * gauge)) &&
-           is_within(sample->stage_position[NT_Z], supervisor->stage_range) && isfinite(sample->deflection[NT_Z]) &&
-           shows_sideways(supervisor, sample) && shows_tapping(supervisor, sample) &&
-           isfinite(sample->stage_position[NT_X]) && isfinite(sample->stage_position[NT_Y]) && isfinite(sample->age) &&
-           sample->age >= 0.0;
+    return bit(is_within(sample->master_position[NT_Z], supervisor->master_range), NT_SEES_MASTER) |
+           bit(gauge == 0.0 || is_within(sample->operator_force[NT_Z], 2.0 * gauge), NT_SEES_OPERATOR) |
+           bit(!supervisor->leads_sideways || is_within_sideways(supervisor, sample), NT_SEES_SIDEWAYS);
+}
+
+static uint32_t seen_of_slave(const nt_supervisor *supervisor, const nt_sample *sample)
+{
+    const double *stage = sample->stage_position;
+    const int has_place = isfinite(stage[NT_X]) && isfinite(stage[NT_Y]);
+    return bit(has_place && is_within(stage[NT_Z], supervisor->stage_range), NT_SEES_STAGE) |
+           bit(isfinite(sample->deflection[NT_Z]), NT_SEES_DEFLECTION) |
+           bit(shows_sideways(supervisor, sample), NT_SEES_LATERAL) |
+           bit(shows_tapping(supervisor, sample), NT_SEES_TAPPING);
+}
+
+/* Below 0: a clock has jumped. */
+static int is_fresh(double age, double period)
+{
+    return age >= 0.0 && age <= STALE_HOLD_PERIODS * period;
 }
 
 static nt_state blame(nt_supervisor_state *state, uint32_t reason, nt_state verdict)
@@ -79,10 +95,15 @@ static nt_state blame(nt_supervisor_state *state, uint32_t reason, nt_state verd
     return verdict;
 }
 
-/* One bad sample: hold, reuse nothing; the second in a row: retract. Never "zero force". */
+/* One bad sample: hold, and nothing of what is bad is used; the second in a row: retract. Never "zero force". */
 static nt_state judge_validity(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    if (is_valid(supervisor, sample)) {
+    const uint32_t flags = sample->flags, bad = flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST);
+    const uint32_t master = !bad || flags & NT_SAMPLE_SLAVE_ALONE ? seen_of_master(supervisor, sample) : 0u;
+    const uint32_t slave = !bad || flags & NT_SAMPLE_MASTER_ALONE ? seen_of_slave(supervisor, sample) : 0u;
+    state->seen = (is_fresh(sample->master_age, supervisor->master_period) ? master : 0u) |
+                  (is_fresh(sample->age, supervisor->period) ? slave : 0u);
+    if (!bad && (master | slave) == NT_SEES_ALL && isfinite(sample->age) && sample->age >= 0.0) {
         state->invalid_run = 0;
         return NT_RUN;
     }
@@ -143,9 +164,8 @@ static nt_state judge_indentation(const nt_supervisor *supervisor, nt_supervisor
 /* A hand that is no longer heard of: the stage stays, the force fades. Nothing says that the tip is in danger. */
 static nt_state judge_master_age(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    const double age = sample->master_age; /* below 0: its clock has jumped */
-    const int is_fresh = age >= 0.0 && age <= STALE_HOLD_PERIODS * supervisor->master_period;
-    return !is_fresh ? blame(state, NT_REASON_MASTER_STALE, NT_HOLD) : NT_RUN;
+    return !is_fresh(sample->master_age, supervisor->master_period) ? blame(state, NT_REASON_MASTER_STALE, NT_HOLD)
+                                                                    : NT_RUN;
 }
 
 static nt_state judge_age(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
@@ -247,18 +267,12 @@ static nt_state judge_motion(const nt_supervisor *supervisor, nt_supervisor_stat
     return worse(growth, judge_follow(supervisor, state, sample));
 }
 
-/* Of a sample that is not valid only this is used, and only to stop: a reading that is a number may say that it does
- * not move as it is told. */
+/* Of a sample that is not valid only this is used, and only to stop: a reading that is a measurement may say that it
+ * does not move as it is told. */
 static nt_state judge_remains(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    const int is_fresh = sample->age >= 0.0 && sample->age <= STALE_HOLD_PERIODS * supervisor->period;
-    if (!is_fresh || sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST))
-        return NT_RUN;
-    const int has_force = isfinite(sample->deflection[NT_Z]);
-    const nt_state growth = has_force ? judge_growth(supervisor, state, sample) : NT_RUN;
-    return is_within(sample->stage_position[NT_Z], supervisor->stage_range)
-               ? worse(growth, judge_follow(supervisor, state, sample))
-               : growth;
+    const nt_state growth = state->seen & NT_SEES_DEFLECTION ? judge_growth(supervisor, state, sample) : NT_RUN;
+    return state->seen & NT_SEES_STAGE ? worse(growth, judge_follow(supervisor, state, sample)) : growth;
 }
 
 /* In a stop: is there force at the tip, or may there be? */

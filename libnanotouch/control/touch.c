@@ -7,9 +7,9 @@
 #include "control/lift.h"
 #include "control/modes.h"
 #include "control/motor.h"
+#include "control/observe.h"
 #include "control/sideways.h"
 #include "core/clamp.h"
-#include "core/same_bits.h"
 
 #define PROBE_STEPS 20.0 /* a sensor that seems stuck is tried by stepping away by this many of the stage's steps */
 
@@ -35,86 +35,6 @@ nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, dou
     state.stage_at[NT_X] = state.stage_at[NT_Y] = NAN;
     state.offset = -gains->alpha_p * master_position; /* the stage begins at 0 */
     return state;
-}
-
-/* A single reading that nothing real can have made gives way to the one between it and the last two; a true jump shows
- * one period late. */
-static double without_spike(const nt_touch *touch, nt_touch_state *state, double deflection)
-{
-    const double last = state->deflections[0], before = state->deflections[1];
-    state->deflections[1] = last;
-    state->deflections[0] = deflection;
-    if (fabs(deflection - last) <= touch->spike)
-        return deflection;
-    return greater(lesser(deflection, last), lesser(greater(deflection, last), before));
-}
-
-/* Positions, and speeds by differences. */
-static void follow_motion(const nt_touch *touch, nt_signals *signals, const nt_sample *sample)
-{
-    const double rate = touch->settings.gains.rate;
-    signals->master_speed = (sample->master_position[NT_Z] - signals->master_position) * rate;
-    signals->smooth_speed += touch->speed_filter * (signals->master_speed - signals->smooth_speed);
-    signals->stage_speed = (sample->stage_position[NT_Z] - signals->stage_position) * rate;
-    signals->master_position = sample->master_position[NT_Z];
-    signals->stage_position = sample->stage_position[NT_Z];
-}
-
-/* A new alpha_p counts from where the master is: no bump. */
-static void rescale(const nt_touch *touch, nt_touch_state *state)
-{
-    nt_signals *signals = &state->signals;
-    const double alpha_p = state->rescale.now.alpha_p;
-    nt_rescale_step(&touch->rescale, &state->rescale, signals->slave_force, signals->stage_position,
-                    signals->smooth_speed);
-    signals->scaling = state->rescale.now;
-    state->offset += (alpha_p - signals->scaling.alpha_p) * signals->master_position;
-}
-
-/* What goes in at the hand, and what comes out at the tip at the operator's scale; behind a virtual coupling, whose
- * spring stores energy, what goes into that. */
-static void watch_energy(const nt_touch *touch, nt_touch_state *state, double stage_step)
-{
-    const nt_signals *signals = &state->signals;
-    const nt_scaling *scaling = &signals->scaling;
-    nt_passivity_state *passivity = &state->passivity;
-    const uint64_t acting = state->ticks + NT_TOUCH_SENT - 1u - touch->delay; /* the tick whose force has been held */
-    const double hand_force =
-        touch->rig.master.gauge ? signals->operator_force : -state->sent[acting % NT_TOUCH_SENT][NT_Z];
-    const nt_port hand = {hand_force, signals->master_position};
-    const int coupled = touch->settings.gains.coupling_stiffness > 0.0;
-    const double tip_step =
-        coupled ? signals->master_position - passivity->last_hand.position : stage_step / scaling->alpha_p;
-    const nt_port tip = {scaling->alpha_f * (coupled ? signals->felt_force : state->projected_force),
-                         passivity->last_tip.position + tip_step};
-    if (state->supervisor.reasons & NT_REASON_OPERATOR_CLIPPED) { /* the hand gives more than the gauge can tell */
-        passivity->last_hand = hand;
-        passivity->last_tip = tip;
-        return;
-    }
-    nt_passivity_step(&touch->passivity, passivity, &hand, &tip);
-    state->signals.gain_factor = passivity->gain;
-}
-
-static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
-{
-    nt_signals *signals = &state->signals;
-    const double stage_step = sample->stage_position[NT_Z] - signals->stage_position;
-    follow_motion(touch, signals, sample);
-    if (touch->leads_sideways)
-        nt_sideways_follow_hand(touch, state, sample);
-    signals->operator_force = touch->rig.master.gauge ? sample->operator_force[NT_Z] : 0.0;
-    signals->smooth_force += touch->force_filter * (signals->operator_force - signals->smooth_force);
-    signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection[NT_Z]);
-    state->amplitude = sample->amplitude;
-    state->lag = sample->lag;
-    nt_sideways_read(touch, state, sample);
-    rescale(touch, state);
-    const int closes = touch->rig.master.motor; /* without a motor no loop closes through the hand */
-    if (closes && state->mode == NT_MODE_TOUCH) /* a servo is meant to move the hand */
-        watch_energy(touch, state, stage_step);
-    if (touch->feels_sideways)
-        nt_sideways_watch(touch, state, sample, closes && state->mode == NT_MODE_TOUCH);
 }
 
 static int moves_sideways(const nt_touch_state *state)
@@ -161,13 +81,19 @@ static double act(const nt_touch *touch, nt_touch_state *state)
     return nt_mode_stop(touch, state, lift_of(touch, state));
 }
 
+/* A law speaks; else what it left fades. */
+static int is_coupled(const nt_touch_state *state)
+{
+    return state->supervisor.state == NT_RUN && state->mode == state->wanted_mode && !state->clutch_open &&
+           (state->mode <= NT_MODE_TOPOGRAPHY || state->mode == NT_MODE_TAPPING);
+}
+
 static void drive_motor(const nt_touch *touch, nt_touch_state *state, double wanted)
 {
+    if (is_coupled(state))
+        state->fade.left = 1.0;
     state->motor_force = nt_motor_limit(&touch->settings.limits, touch->motor_step, state->motor_force, wanted,
-                                        state->signals.smooth_speed);
-    const int coupled = state->supervisor.state == NT_RUN && state->mode == state->wanted_mode && !state->clutch_open;
-    if (coupled && (state->mode <= NT_MODE_TOPOGRAPHY || state->mode == NT_MODE_TAPPING))
-        state->coupled_force = state->motor_force;
+                                        nt_observe_speed(state));
 }
 
 /* A read-out that cannot be trusted (not RUN) or that follow_error calls a fault takes no part: the integral stands
@@ -189,8 +115,7 @@ static double drive_stage(const nt_touch *touch, nt_touch_state *state, const nt
 void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample, nt_command *command)
 {
     supervise(touch, state, sample);
-    if (state->supervisor.invalid_run == 0)
-        observe(touch, state, sample);
+    nt_observe(touch, state, sample);
     drive_motor(touch, state, act(touch, state));
     nt_sideways_drive(touch, state);
     state->command.stage_position[NT_Z] = drive_stage(touch, state, sample);

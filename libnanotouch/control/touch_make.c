@@ -5,9 +5,11 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "control/sideways.h"
 #include "core/clamp.h"
 #include "core/problem.h"
 #include "core/same_bits.h"
+#include "nanotouch/motor_bound.h"
 #include "nanotouch/material.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */
@@ -76,12 +78,6 @@ static double spike_of(const nt_rig *rig, const nt_settings *settings)
     return SPIKE_SIGMA * noise + SPIKE_MOTION * motion / settings->gains.rate;
 }
 
-/* A master of three axes over a lever that shows what holds the tip; one without motors is told, too. */
-static int feels_sideways(const nt_rig *rig)
-{
-    return rig->master.axes > 1.0 && rig->stage.axes > 1.0 && rig->probe.lateral_stiffness > 0.0;
-}
-
 /* No force of the hand is known in x and y, K_f has no part there, and no more acts than the lateral limit. */
 static nt_passivity sideways_passivity(const nt_rig *rig, const nt_settings *settings)
 {
@@ -117,7 +113,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .law = nt_control_law_of(&settings->control),
                      .stage_loop = nt_stage_loop_make(&rig->stage, &equivalent.gains),
                      .leads_sideways = rig->master.axes > 1.0 && rig->stage.axes > 1.0,
-                     .feels_sideways = feels_sideways(rig),
+                     .feels_sideways = nt_sideways_is_felt(rig),
                      .borders = {{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}},
                      .delay = (uint32_t)lesser(round(settings->gains.delay), NT_TOUCH_SENT - 1.0),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),
@@ -125,6 +121,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .stage_step = settings->limits.stage_speed * period,
                      .stage_end = 0.5 * rig->stage.travel,
                      .motor_step = settings->limits.motor_rate * period,
+                     .fade_product = nt_motor_bound_compute(rig, settings).fade_product,
                      .spike = spike_of(&equivalent.rig, settings),
                      .passivity = nt_passivity_make(&equivalent.rig, &equivalent.gains),
                      .rescale = nt_rescale_make(rig, settings),

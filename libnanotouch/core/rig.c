@@ -46,6 +46,7 @@ static const nt_field rig_fields[] = {
     FIELD(master.travel, "m", 1e-5, 1e1, "travel of the master between its end stops"),
     FIELD(master.resolution, "m", 0.0, 1e-2, "step of the master's position sensor, 0 for none"),
     FIELD(master.max_force, "N", 1e-3, 1e3, "motor limit, +- this"),
+    FIELD(master.max_speed, "m/s", 1e-4, 1e1, "of the hand that holds it: the shorter a stop's fade of the force"),
     FIELD(master.gauge, "no|yes", 0.0, 1.0, "whether an operator force sensor is fitted"),
     FIELD(master.gauge_range, "N", 1e-3, 1e3, "the strain gauge saturates at +- this"),
     FIELD(master.gauge_noise, "N", 0.0, 1e2, "standard deviation of the strain gauge"),
@@ -109,6 +110,7 @@ nt_rig nt_rig_defaults(void)
                 .travel = 0.02,
                 .resolution = 4e-5,
                 .max_force = 5.0,
+                .max_speed = 0.3, /* not in the paper: of a hand that feels its way */
                 .gauge = 1,
                 .gauge_range = 5.0,
                 .gauge_noise = 0.02 / 6.0, /* the paper's 0.02 N include the noise: peak to peak within one step */

@@ -149,6 +149,15 @@ static double seconds_between(int64_t from, int64_t to)
     return (double)(int64_t)((uint64_t)to - (uint64_t)from) / 1e9; /* whatever a half calls its time */
 }
 
+/* Flags of both. Where one device alone is to blame the other one's numbers still count. */
+static uint32_t join_flags(uint32_t master, uint32_t slave)
+{
+    const uint32_t bad = NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST, both = master | slave;
+    if (master & bad && !(slave & bad))
+        return both | NT_SAMPLE_MASTER_ALONE;
+    return slave & bad && !(master & bad) ? both | NT_SAMPLE_SLAVE_ALONE : both;
+}
+
 void nt_hal_join(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now, nt_sample *sample)
 {
     const nt_reading *hand = &master->reading, *probe = &slave->reading;
@@ -156,7 +165,7 @@ void nt_hal_join(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64
     sample->age = seconds_between(probe->time, now);
     sample->master_age = seconds_between(hand->time, now);
     sample->lateness = hand->lateness > probe->lateness ? hand->lateness : probe->lateness;
-    sample->flags = hand->flags | probe->flags;
+    sample->flags = join_flags(hand->flags, probe->flags);
     copy_axes(sample->master_position, hand->position);
     copy_axes(sample->operator_force, hand->felt);
     copy_axes(sample->stage_position, probe->position);

@@ -28,6 +28,7 @@ static inline nt_master widened_master(const ntf_master *from)
                        .travel = (double)from->travel,
                        .resolution = (double)from->resolution,
                        .max_force = (double)from->max_force,
+                       .max_speed = (double)from->max_speed,
                        .gauge = from->gauge,
                        .gauge_range = (double)from->gauge_range,
                        .gauge_noise = (double)from->gauge_noise,

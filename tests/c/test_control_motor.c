@@ -17,15 +17,41 @@ static void height_is_a_spring(void **state)
     assert_true(fabs(nt_motor_height(&gains, 1e-3, 2e-3) + 3.0) < 1e-12);
 }
 
-static void fading_takes_energy_from_the_master(void **state)
+/* 50 ms for a small force, then |F| T is what it may be, and at last the rate of one axis is the end of it. */
+static void a_fade_is_as_short_as_the_hand_needs(void **state)
 {
     (void)state;
-    const nt_master master = nt_rig_defaults().master;
-    for (double speed = -1.0; speed <= 1.0; speed += 0.25) {
-        const double force = nt_motor_fade(&master, 0.0, speed);
-        assert_true(force * speed <= 0.0 && fabs(force) <= master.damping * fabs(speed));
-        assert_true(nt_motor_fade(&master, 2.0, speed) == 2.0 + force);
+    const double product = 6e-3, rate = 2000.0;
+    const double small[] = {0.0, 0.0, -0.1}, medium[] = {0.3, 0.0, -0.4}, large[] = {3.0, -5.0, 4.0};
+    assert_true(nt_motor_fade_time(product, rate, small) == 0.05);
+    assert_true(fabs(nt_motor_fade_time(product, rate, medium) - 0.012) < 1e-15); /* 6e-3/0.5 */
+    assert_true(nt_motor_fade_time(product, rate, large) == 2.5e-3);              /* not 6e-3/7.07 = 0.85 ms */
+}
+
+/* In a line from what it was; engaged falls with it, and goes on from there. */
+static void a_force_fades_in_a_line(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    nt_touch touch;
+    assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL), NT_OK);
+    nt_touch_state fades = nt_touch_start(&touch, 0.0, 0.0, 0.0);
+    fades.fade.left = 1.0;
+    fades.engaged = 0.5;
+    fades.command.motor_force[NT_Z] = -2.0;
+    const double time = nt_motor_fade_time(touch.fade_product, settings.limits.motor_rate, fades.command.motor_force);
+    for (int i = 1; i <= 60; i++) {
+        const double left = nt_motor_fade(&touch, &fades), line = 1.0 - i * touch.period / time;
+        assert_true(fabs(left - (line > 0.0 ? line : 0.0)) < 1e-12);
+        assert_true(fabs(fades.engaged - 0.5 * left) < 1e-12);
+        assert_true(nt_motor_faded(&touch, &fades, NT_Z, 0.0) == -2.0 * left);
+        assert_true(nt_motor_faded(&touch, &fades, NT_Z, 0.3) == -2.0 * left); /* a brake already: no more of it */
+        const double driving = nt_motor_faded(&touch, &fades, NT_Z, -0.01);   /* it drives: braked with 0.5 b v */
+        assert_true(fabs(driving - (2.0 * left > 0.5 ? 0.5 - 2.0 * left : 0.0)) < 1e-12);
+        assert_true(nt_motor_faded(&touch, &fades, NT_Z, -1.0) == 0.0); /* and never turned round */
     }
+    assert_true(time < 60 * touch.period);
 }
 
 static void rate_and_amplitude_are_limited(void **state)
@@ -67,7 +93,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(height_is_a_spring),
-        cmocka_unit_test(fading_takes_energy_from_the_master),
+        cmocka_unit_test(a_fade_is_as_short_as_the_hand_needs),
+        cmocka_unit_test(a_force_fades_in_a_line),
         cmocka_unit_test(rate_and_amplitude_are_limited),
         cmocka_unit_test(power_is_limited_where_the_motor_drives),
     };

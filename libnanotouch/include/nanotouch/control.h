@@ -5,6 +5,7 @@
 
 #include "nanotouch/guarantee.h"
 #include "nanotouch/margins.h"
+#include "nanotouch/motor_bound.h"
 #include "nanotouch/passivity.h"
 #include "nanotouch/preflight.h"
 #include "nanotouch/scaling.h"

@@ -55,6 +55,7 @@ typedef struct nt_master {
     double travel;           /* x_m runs over -travel/2 .. +travel/2 [m] */
     double resolution;       /* step of the position sensor [m] */
     double max_force;        /* motor limit, +- [N] */
+    double max_speed;        /* of the hand that holds it: the force fades fast enough for this (motor_bound.h) [m/s] */
     int gauge;               /* "no|yes": an operator force sensor (strain gauge); without, f_m is not measured */
     double gauge_range;      /* strain gauge, +- [N] */
     double gauge_noise;      /* standard deviation of the strain gauge [N] */

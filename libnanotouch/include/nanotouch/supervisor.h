@@ -99,9 +99,23 @@ typedef struct nt_stuck {
     double position[NT_AXES]; /* of the stage, where they began [m] */
 } nt_stuck;
 
+/* Channels of a sample that are measurements: numbers that their sensor can give, of a device that is not to blame, and
+ * fresh. One that is not leaves the others alone. */
+enum {
+    NT_SEES_MASTER = 1u << 0,   /* its position along z */
+    NT_SEES_OPERATOR = 1u << 1, /* the operator's force, where there is a gauge */
+    NT_SEES_SIDEWAYS = 1u << 2, /* x and y of a master that leads sideways */
+    NT_SEES_STAGE = 1u << 3,    /* its position */
+    NT_SEES_DEFLECTION = 1u << 4,
+    NT_SEES_LATERAL = 1u << 5, /* x and y of the deflection, where the lever shows them */
+    NT_SEES_TAPPING = 1u << 6, /* amplitude and lag, of a lever that taps */
+    NT_SEES_ALL = (1u << 7) - 1u
+};
+
 typedef struct nt_supervisor_state {
     nt_state state;
     uint32_t reasons;
+    uint32_t seen;        /* NT_SEES_* of this sample */
     uint32_t invalid_run; /* invalid samples in a row */
     uint32_t law_run;     /* laws without a number in a row */
     uint32_t late_run;    /* late ticks less punctual ones, at least 0 */

@@ -32,6 +32,7 @@ typedef struct nt_touch {
     double stage_step;      /* largest, in a period [m] */
     double stage_end;       /* of its travel, either way [m] */
     double motor_step;      /* largest, in a period [N] */
+    double fade_product;    /* after an event a motor force F is gone within this over |F| (motor_bound.h) [N s] */
     double drive_amplitude; /* of mode tapping, 0 in the others [m] */
     double drive_frequency; /* the same [Hz] */
     double spike;           /* a deflection that jumps by more than this may be a wrong reading [m] */
@@ -45,6 +46,20 @@ typedef struct nt_touch {
 typedef enum nt_phase { NT_PHASE_DOWN, NT_PHASE_UP, NT_PHASE_DONE } nt_phase;
 
 enum { NT_TOUCH_SENT = 256 };
+
+/* The motor's force after an event that uncouples hand and tip. */
+typedef struct nt_fade {
+    nt_sum left;          /* of the force before the event; 1: they are coupled [-] */
+    double step;          /* by which that falls in a period [-] */
+    double from[NT_AXES]; /* the force before the event [N] */
+} nt_fade;
+
+/* Periods in a row without a measurement of a channel, this one counted. */
+typedef struct nt_gaps {
+    uint32_t position; /* of the master along z */
+    uint32_t force;    /* of the operator */
+    uint32_t slave;    /* stage or deflection */
+} nt_gaps;
 
 typedef struct nt_touch_state {
     nt_mode mode, wanted_mode; /* they differ while the force of the old one fades out */
@@ -63,8 +78,9 @@ typedef struct nt_touch_state {
     double stretch;                      /* of the virtual coupling, at the operator's scale [m] */
     int clutch_open;                     /* the master moves alone */
     nt_sum engaged;                      /* 0 .. 1, fades the force in and out [-] */
+    nt_fade fade;
+    nt_gaps gaps;
     double motor_force;                  /* last command [N] */
-    double coupled_force;                /* what is left of the last command given while coupled [N] */
     nt_sum retracted;                    /* lifted so far [m] */
     double hand_at[2];                   /* x and y of the master when it was last seen [m] */
     double stage_at[2];                  /* x and y of the stage then [m] */
@@ -72,7 +88,6 @@ typedef struct nt_touch_state {
     double hand_speed[2];                /* of the master in x and y, behind the same low-pass as along z [m/s] */
     double lateral_force[2];             /* on the tip, + along x and y; 0 where the lever does not show it [N] */
     double projected_force;              /* f_s, and what a hand of one axis feels of the lateral force [N] */
-    double coupled_sideways[2];          /* last force on the hand in x and y while coupled [N] */
     double target_x, target_y;           /* lateral set-point [m] */
     nt_sum target_time;                  /* left to get there [s] */
     double sent[NT_TOUCH_SENT][NT_AXES]; /* motor forces of the last ticks, by their number [N] */

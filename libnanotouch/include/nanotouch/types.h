@@ -63,7 +63,10 @@ enum {
     NT_SAMPLE_LIMIT_SWITCH = 1u << 1,   /* the stage stands at its end switch */
     NT_SAMPLE_INVALID = 1u << 2,        /* the backend itself knows that the frame is bad (CRC, short transfer) */
     NT_SAMPLE_SATURATED = 1u << 3,      /* the deflection stood at the end of its range before the tare was taken off */
-    NT_SAMPLE_DEVICE_LOST = 1u << 4     /* a device is gone: nothing of this sample is a measurement */
+    NT_SAMPLE_DEVICE_LOST = 1u << 4,    /* a device is gone */
+    /* Of a sample that is INVALID or DEVICE_LOST nothing is a measurement, unless one device alone is to blame: */
+    NT_SAMPLE_MASTER_ALONE = 1u << 5, /* the master is; the slave's numbers are measurements */
+    NT_SAMPLE_SLAVE_ALONE = 1u << 6   /* the slave is; the master's numbers are measurements */
 };
 
 /* What the rig measured in one tick. */
