@@ -237,6 +237,7 @@ set(nanotouch_sources_session
     session/tap_loop.c
     session/terrain.c
     session/terrain_reach.c
+    session/wall_pace.c
     session/well.c)
 set(nanotouch_sources_fit
     fit/batch.cpp

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Written by nanotouch 0.1.0: do not edit. Needs nanotouch_single.h and .c (tools/single.py).
  *
- * plan_force: the force over the gap, 31 pieces. It is within 0.001 of max(|F|, 18 nN) of the plan's
+ * w37b_plan_force: the force over the gap, 31 pieces. It is within 0.001 of max(|F|, 18 nN) of the plan's
  * where the gap is 0 m or more from a fold, a jump and first touch. The plan's own bound is below.
- * plan_touch: the touch step in the mode "approach", 10000 steps in a second.
+ * w37b_plan_touch: the touch step in the mode "approach", 10000 steps in a second.
  *
  * contact: Maugis-Dugdale table, lambda 0.0401; adhesion by a water meniscus, w = 140.9 mJ/m2 beside van der Waals;
  * Hertz would err by 86 %, DMT would err by 23 %, JKR would err by 26 %
@@ -12,14 +12,14 @@
  * beside them on; cost 2 Hertz evaluations (1.9 where each waits for the last), everything exact 7
  * pull-off 17.98 nN; the force jumps in, whatever the spring; stiffest contact 665 N/m
  */
-#ifndef NANOTOUCH_CONSTANTS_PLAN_H
-#define NANOTOUCH_CONSTANTS_PLAN_H
+#ifndef NANOTOUCH_CONSTANTS_W37B_PLAN_H
+#define NANOTOUCH_CONSTANTS_W37B_PLAN_H
 
 #include <math.h>
 
 #include "nanotouch_single.h"
 
-static const ntf_force_piece plan_pieces[31] = {
+static const ntf_force_piece w37b_plan_pieces[31] = {
     {-9.29994082e-10f, 2.15055130e+09f, {3.99588487e-07f, -3.09100329e-07f, 3.73146136e-08f, 5.00933739e-09f}},
     {-4.64997041e-10f, 4.30110259e+09f, {1.32812090e-07f, -1.09721547e-07f, 1.31080142e-08f, 1.69512593e-09f}},
     {-2.32498520e-10f, 8.60220518e+09f, {3.78936846e-08f, -3.92100716e-08f, 4.56205962e-09f, 5.48926071e-10f}},
@@ -53,8 +53,8 @@ static const ntf_force_piece plan_pieces[31] = {
     {2.32832731e-09f, 2.80781728e+08f, {-5.21449377e-11f, 1.46906168e-10f, -1.74855033e-10f, 7.11056422e-11f}},
 };
 
-static const ntf_force_table plan_force = {
-    plan_pieces,
+static const ntf_force_table w37b_plan_force = {
+    w37b_plan_pieces,
     28, /* contact */
     3, /* apart */
     6.99999947e-10f, /* capture_gap */
@@ -65,7 +65,7 @@ static const ntf_force_table plan_force = {
     0.00000000e+00f, /* fold_distance */
 };
 
-static const ntf_touch plan_touch = {
+static const ntf_touch w37b_plan_touch = {
     {
         {
             8.00000000e+00f, /* spring_constant */
@@ -107,6 +107,7 @@ static const ntf_touch plan_touch = {
             1.99999996e-02f, /* travel */
             3.99999990e-05f, /* resolution */
             5.00000000e+00f, /* max_force */
+            3.00000012e-01f, /* max_speed */
             1, /* gauge */
             5.00000000e+00f, /* gauge_range */
             3.33333341e-03f, /* gauge_noise */
@@ -210,6 +211,7 @@ static const ntf_touch plan_touch = {
     1.99999994e-09f, /* stage_step */
     4.99999987e-05f, /* stage_end */
     2.00000003e-01f, /* motor_step */
+    6.33249572e-03f, /* fade_product */
     0.00000000e+00f, /* drive_amplitude */
     0.00000000e+00f, /* drive_frequency */
     1.93022114e-08f, /* spike */

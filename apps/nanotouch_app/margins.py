@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     path = CLEARANCE + INDENTATION_RANGE if args.path is None else parse_quantity(args.path, "m")
     stiffness = plan.maximum_stiffness
     found, budget = margins.compute(rig, settings, stiffness, args.mode), margins.resolution(rig, settings, path)
-    calm = margins.calm(rig, settings, stiffness)
+    calm, hand = margins.calm(rig, settings, stiffness), margins.motor_bound(rig, settings)
     if not args.no_map:
         require("matplotlib", "app")
     with output.folder(args, FILES) as out:
@@ -73,6 +73,7 @@ def run(args: argparse.Namespace) -> int:
                     *(f"warning: {warning}" for warning in plan.warnings),
                     words(found, budget, settings, rig),
                     f"felt: {calm}",
+                    str(hand),
                 ]
             )
         )
@@ -81,6 +82,7 @@ def run(args: argparse.Namespace) -> int:
             **found._asdict(),
             "refusal": found.refusal,
             **budget._asdict(),
+            "hand": hand._asdict(),
             "calm": {name: _plain(value) for name, value in calm.facts().items()},
         }
         args.answer = {name: _plain(value) for name, value in facts.items()}

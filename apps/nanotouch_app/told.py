@@ -109,6 +109,7 @@ def _safe(session: nt.Session, facts: dict[str, Any]) -> list[str]:
         f"whatever the hand does: at most {promised.force * 1e9:.4g} nN on the sample, and "
         f"{promised.zero_drift * 1e9:.2g} nN more each second; at most {promised.indentation * 1e9:.4g} nm deep"
     )
+    lines.append(str(promised.hand))
     lines.append(_failing(promised.with_failure))
     lines.append(f"a stop takes effect within {promised.reaction_time * 1e3:.2f} ms")
     return lines

@@ -7,11 +7,11 @@
 #include <math.h>
 
 #include "control/motor.h"
-#include "control/sideways.h"
+#include "control/sampled.h"
 #include "core/clamp.h"
 
-#define HAND_ENERGY 1e-3   /* W [J] */
-#define RELEASED_MASS 0.1  /* of a handle that is let go [kg] */
+#define HAND_ENERGY 1e-3  /* W [J] */
+#define RELEASED_MASS 0.1 /* of a handle that is let go [kg] */
 
 nt_motor_bound nt_motor_bound_compute(const nt_rig *rig, const nt_settings *settings)
 {

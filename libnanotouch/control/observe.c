@@ -46,8 +46,7 @@ static void follow_master(const nt_touch *touch, nt_touch_state *state, double p
     nt_signals *signals = &state->signals;
     const uint32_t periods = state->gaps.position;
     signals->master_speed = (position - signals->master_position) * rate_of(touch, periods);
-    signals->smooth_speed +=
-        share_of(touch->speed_filter, periods) * (signals->master_speed - signals->smooth_speed);
+    signals->smooth_speed += share_of(touch->speed_filter, periods) * (signals->master_speed - signals->smooth_speed);
     signals->master_position = position;
     if (periods > 1u)
         state->offset = state->reference - signals->scaling.alpha_p * position;
@@ -59,8 +58,7 @@ static void follow_operator(const nt_touch *touch, nt_touch_state *state, double
     nt_signals *signals = &state->signals;
     const uint32_t periods = state->gaps.force;
     signals->operator_force = touch->rig.master.gauge ? force : 0.0;
-    signals->smooth_force +=
-        share_of(touch->force_filter, periods) * (signals->operator_force - signals->smooth_force);
+    signals->smooth_force += share_of(touch->force_filter, periods) * (signals->operator_force - signals->smooth_force);
     state->gaps.force = 0;
 }
 
@@ -135,8 +133,8 @@ static void observe_all(const nt_touch *touch, nt_touch_state *state, const nt_s
 
 static void observe_seen(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
-    const uint32_t seen = state->supervisor.seen, slave = NT_SEES_ALL & ~(NT_SEES_MASTER | NT_SEES_OPERATOR |
-                                                                          NT_SEES_SIDEWAYS);
+    const uint32_t seen = state->supervisor.seen,
+                   slave = NT_SEES_ALL & ~(NT_SEES_MASTER | NT_SEES_OPERATOR | NT_SEES_SIDEWAYS);
     if (seen & NT_SEES_MASTER)
         follow_master(touch, state, sample->master_position[NT_Z]);
     if (touch->leads_sideways) {

@@ -120,4 +120,10 @@ typedef struct nt_sampled_limits {
 /* reflected_stiffness: alpha_f alpha_p k_eff [N/m]. */
 nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force_gain, double reflected_stiffness);
 
+/* A master of three axes over a lever that shows what holds the tip; one without motors is told, too. */
+static inline int nt_sideways_is_felt(const nt_rig *rig)
+{
+    return rig->master.axes > 1.0 && rig->stage.axes > 1.0 && rig->probe.lateral_stiffness > 0.0;
+}
+
 #endif

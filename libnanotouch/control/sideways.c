@@ -110,7 +110,8 @@ void nt_sideways_move(const nt_touch *touch, nt_touch_state *state)
 /* While a law speaks; where none does along x and y, damping is left. */
 static double wanted_of(const nt_touch *touch, const nt_touch_state *state, int axis)
 {
-    const double force = state->mode == NT_MODE_TOUCH ? state->signals.scaling.alpha_f * state->lateral_force[axis] : 0.0;
+    const double force =
+        state->mode == NT_MODE_TOUCH ? state->signals.scaling.alpha_f * state->lateral_force[axis] : 0.0;
     return felt_of(state, axis, force) +
            nt_passivity_damping_force(&touch->passivity_sideways, &state->passivity_sideways[axis]);
 }

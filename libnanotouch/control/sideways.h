@@ -5,12 +5,6 @@
 
 #include "nanotouch/touch.h"
 
-/* A master of three axes over a lever that shows what holds the tip; one without motors is told, too. */
-static inline int nt_sideways_is_felt(const nt_rig *rig)
-{
-    return rig->master.axes > 1.0 && rig->stage.axes > 1.0 && rig->probe.lateral_stiffness > 0.0;
-}
-
 /* How far the hand has gone sideways since the tip last followed, and how fast it goes. */
 void nt_sideways_follow_hand(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample);
 /* The lever's force sideways, and what a hand of one axis feels of it. After signals.slave_force. */

@@ -92,8 +92,8 @@ static void drive_motor(const nt_touch *touch, nt_touch_state *state, double wan
 {
     if (is_coupled(state))
         state->fade.left = 1.0;
-    state->motor_force = nt_motor_limit(&touch->settings.limits, touch->motor_step, state->motor_force, wanted,
-                                        nt_observe_speed(state));
+    state->motor_force =
+        nt_motor_limit(&touch->settings.limits, touch->motor_step, state->motor_force, wanted, nt_observe_speed(state));
 }
 
 /* A read-out that cannot be trusted (not RUN) or that follow_error calls a fault takes no part: the integral stands
@@ -126,6 +126,8 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     state->command.drive_frequency = touch->drive_frequency;
     for (int i = 0; i < NT_AXES; ++i)
         state->sent[state->ticks % NT_TOUCH_SENT][i] = state->command.motor_force[i];
+    if (state->command.state != (uint32_t)state->supervisor.state)
+        state->since = state->ticks;
     state->command.state = (uint32_t)state->supervisor.state;
     state->command.reasons = state->supervisor.reasons;
     ++state->ticks;

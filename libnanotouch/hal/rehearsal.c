@@ -9,12 +9,15 @@
 #include "nanotouch/hal.h"
 
 #define STALE_PERIODS 2.0 /* of the slower of loop and half: older is stale (supervisor.c) */
+#define SAME_LEAST 50     /* readings of one number that say that a sensor has no noise, as NT_STUCK_SAMPLES does */
 #define ALL_FLAGS (2u * NT_SAMPLE_DEVICE_LOST - 1u)
 
 typedef struct play {
     const nt_rehearsal *asked;
     nt_hal hal; /* opened by hal.c, which checks table and capabilities */
     nt_reading last;
+    uint64_t new_readings; /* in this life */
+    uint32_t moved;        /* channels that have shown more than one number in it */
     nt_rehearsed *seen;
     nt_problem *problem;
 } play;
@@ -98,6 +101,16 @@ static nt_action harmless(const play *p, uint64_t tick)
     return action;
 }
 
+/* Which channels have changed since the last reading. */
+static void look_for_noise(play *p, const nt_reading *reading)
+{
+    nt_reading before = p->last, now = *reading;
+    for (int i = 0; i < NT_READS && p->new_readings > 0; ++i)
+        if (*nt_reading_channel(&before, i) != *nt_reading_channel(&now, i))
+            p->moved |= 1u << i;
+    ++p->new_readings;
+}
+
 static nt_status play_period(play *p, uint64_t tick)
 {
     nt_reading reading = p->last;
@@ -108,7 +121,10 @@ static nt_status play_period(play *p, uint64_t tick)
         status = check_reading(p, &reading);
     if (status != NT_OK)
         return status;
-    p->seen->readings += tick == 0 || reading.sequence > p->last.sequence;
+    if (tick == 0 || reading.sequence > p->last.sequence) {
+        ++p->seen->readings;
+        look_for_noise(p, &reading);
+    }
     p->last = reading;
     const nt_action action = harmless(p, tick);
     return named(p, p->hal.backend->write(p->hal.context, &action), "write");
@@ -123,6 +139,8 @@ static nt_status play_armed(play *p)
         status = play_period(p, (uint64_t)i);
         p->asked->pass(p->asked->host, p->asked->configuration.period);
     }
+    if (p->new_readings >= SAME_LEAST) /* NaN differs from itself: what is not measured has "moved" */
+        p->seen->same |= ((1u << NT_READS) - 1u) & ~p->moved;
     nt_hal_disarm(&p->hal);
     return status;
 }
@@ -130,6 +148,8 @@ static nt_status play_armed(play *p)
 /* Armed once or not at all; closed in any case. */
 static nt_status play_life(play *p, int is_armed)
 {
+    p->new_readings = 0;
+    p->moved = 0;
     p->last = (nt_reading){.size = sizeof p->last, .position = {NAN, NAN, NAN}, .felt = {NAN, NAN, NAN}};
     nt_status status = nt_hal_open(&p->hal, p->asked->half, &p->asked->choice, p->asked->host, p->problem);
     if (status != NT_OK)

@@ -72,10 +72,15 @@ void nt_session_unlock(nt_session *session)
 }
 
 /* What is owed is run at once, and meanwhile no device says anything new. A quarter of a device's own period is the
- * most: twice that may come between two readings, half a period more than they are apart, and two make it stale. */
+ * most: twice that may come between two readings, half a period more than they are apart, and two make it stale. A real
+ * master without one measures in every period. */
 double nt_wall_longest_lag(const nt_session *session)
 {
-    const double due = fmax(0.25 * nt_session_own_period(session), 2.0 * session->now->touch.period);
+    const double period = session->now->touch.period;
+    const double own = session->master.capabilities.can & NT_IS_REAL && session->master.capabilities.period == 0.0
+                           ? period
+                           : nt_session_own_period(session);
+    const double due = fmax(0.25 * own, 2.0 * period);
     return fmin(LONGEST_LAG, due);
 }
 

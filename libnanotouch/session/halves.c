@@ -235,11 +235,3 @@ double nt_session_own_period(const nt_session *session)
     }
     return shortest;
 }
-
-nt_status nt_session_check_pace(const nt_session *session, nt_pace pace)
-{
-    const uint32_t can = session->master.capabilities.can | session->slave.capabilities.can;
-    if (pace != NT_PACE_HARD && can & NT_IS_REAL)
-        return NT_E_UNSUPPORTED;
-    return pace == NT_PACE_HARD && can & NT_IS_SLOW ? NT_E_UNSUPPORTED : NT_OK;
-}

@@ -139,12 +139,26 @@ static long due_ticks(const nt_session *session, nt_wall_clock *clock)
     return 1;
 }
 
+static void keep_worst(nt_runner *runner, double delay)
+{
+    if (delay > atomic_load_explicit(&runner->worst_delay, memory_order_relaxed))
+        atomic_store_explicit(&runner->worst_delay, delay, memory_order_relaxed);
+}
+
+static void wait_for_wake(nt_session *session, int64_t deadline)
+{
+    const int waits = deadline > nt_clock_now();
+    rest(session, deadline);
+    if (waits)
+        keep_worst(session->runner, 1e-9 * (double)(nt_clock_now() - deadline));
+}
+
 static void run_wall(nt_session *session)
 {
     nt_runner *runner = session->runner;
     const double period = session->now->touch.period;
     nt_wall_clock clock = {.last = nt_clock_now(), .lag = nt_wall_longest_lag(session)};
-    const int64_t wake = llround(fmin(WAKE, 0.5e9 * clock.lag));
+    const int64_t wake = nt_wall_wake(session);
     while (!is_over(session)) {
         if (atomic_load(&runner->paused)) {
             if (pass_pause(session) < 0)
@@ -159,7 +173,7 @@ static void run_wall(nt_session *session)
         if (done == 0)
             take_requests(session);
         clock.due -= (double)done * period;
-        rest(session, session->leader && done > 0 ? clock.last : clock.last + wake);
+        wait_for_wake(session, session->leader && done > 0 ? clock.last : clock.last + wake);
     }
 }
 
@@ -170,8 +184,7 @@ static int hard_tick(void *context, uint64_t tick, double lateness)
     (void)tick;
     session->lateness = lateness;
     const nt_status status = nt_session_tick(session);
-    if (session->lateness > atomic_load_explicit(&runner->worst_delay, memory_order_relaxed))
-        atomic_store_explicit(&runner->worst_delay, session->lateness, memory_order_relaxed);
+    keep_worst(runner, session->lateness);
     atomic_store_explicit(&runner->ticks, session->touch_state.ticks, memory_order_relaxed);
     if (status != NT_OK)
         atomic_store(&runner->status, (int)status);
@@ -238,6 +251,8 @@ nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks)
     nt_status status = nt_session_check_pace(session, pace);
     if (status == NT_OK && nt_session_events_are_full(session))
         status = NT_E_CAPACITY;
+    if (status == NT_OK && pace == NT_PACE_WALL)
+        status = nt_wall_judge(session);
     if (status != NT_OK)
         return status;
     nt_runner *runner = calloc(1, sizeof *runner);

@@ -82,6 +82,7 @@ struct nt_session {
     atomic_uintptr_t asker, ticker;    /* ... this one; and the one that runs ticks; 0: none (nt_session_thread) */
     atomic_int call_status;            /* of the caller that waits: CALL_WAITING until it has been done */
     nt_runner *runner;                 /* NULL: no thread */
+    nt_wall_pace wall;                 /* with a real master, once it was started */
     struct nt_history *history;        /* NULL: none is kept */
     nt_origin origin;
     uint64_t kept_events; /* since it was opened */
@@ -156,8 +157,6 @@ nt_status nt_session_open_halves(nt_session *session, nt_problem *problem);
 /* The shortest one of a half that measures by a clock of its own; infinite where there is none [s]. What is simulated
  * measures in session time. */
 double nt_session_own_period(const nt_session *session);
-/* May they run at this pace? */
-nt_status nt_session_check_pace(const nt_session *session, nt_pace pace);
 /* Tare and sign test, on the rig's own time. */
 nt_status nt_session_fly(nt_session *session, nt_problem *problem);
 /* Of mode tapping: switches the drive on and compares the free amplitude with the settings. */
@@ -230,6 +229,16 @@ uintptr_t nt_session_thread(void);
 /* One thread prepares and asks at a time. */
 void nt_session_lock(nt_session *session);
 void nt_session_unlock(nt_session *session);
+
+/* --- wall_pace.c --- */
+
+/* May its devices run at this pace? */
+nt_status nt_session_check_pace(const nt_session *session, nt_pace pace);
+/* Between two wake-ups [ns]. */
+int64_t nt_wall_wake(const nt_session *session);
+/* Before it starts at wall pace: measures how late this machine wakes up, and judges the loop with that. NT_E_RANGE
+ * where the margin is too small. Some ten milliseconds. */
+nt_status nt_wall_judge(nt_session *session);
 
 /* --- pace.c --- */
 

@@ -47,7 +47,7 @@ static void a_force_fades_in_a_line(void **state)
         assert_true(fabs(fades.engaged - 0.5 * left) < 1e-12);
         assert_true(nt_motor_faded(&touch, &fades, NT_Z, 0.0) == -2.0 * left);
         assert_true(nt_motor_faded(&touch, &fades, NT_Z, 0.3) == -2.0 * left); /* a brake already: no more of it */
-        const double driving = nt_motor_faded(&touch, &fades, NT_Z, -0.01);   /* it drives: braked with 0.5 b v */
+        const double driving = nt_motor_faded(&touch, &fades, NT_Z, -0.01);    /* it drives: braked with 0.5 b v */
         assert_true(fabs(driving - (2.0 * left > 0.5 ? 0.5 - 2.0 * left : 0.0)) < 1e-12);
         assert_true(nt_motor_faded(&touch, &fades, NT_Z, -1.0) == 0.0); /* and never turned round */
     }

@@ -126,7 +126,8 @@ static void read(ride *r)
     nt_sample *sample = &r->sample;
     const double q = r->touch.rig.master.resolution;
     for (int i = 0; i < AXES; ++i)
-        sample->master_position[i] = r->touch.rig.master.axes > 1.0 || i == NT_Z ? q * round(r->position[i] / q) : (double)NAN;
+        sample->master_position[i] =
+            r->touch.rig.master.axes > 1.0 || i == NT_Z ? q * round(r->position[i] / q) : (double)NAN;
     sample->stage_position[NT_Z] = r->command.stage_position[NT_Z];
     sample->deflection[NT_Z] += 1e-10 * nt_random_normal(&r->random);
 }
@@ -145,35 +146,74 @@ static void turn(ride *r)
     r->sample.deflection[NT_Z] = felt / probe->spring_constant;
     r->sample.operator_force[NT_Z] = between(r, -4.0, 4.0);
     for (int i = 0; i < NT_Z; ++i)
-        r->sample.deflection[i] = probe->lateral_stiffness > 0.0 ? between(r, -1.0, 1.0) * 0.5 *
-                                                                       r->touch.settings.limits.lateral_force /
-                                                                       probe->lateral_stiffness
-                                                                 : 0.0;
+        r->sample.deflection[i] =
+            probe->lateral_stiffness > 0.0
+                ? between(r, -1.0, 1.0) * 0.5 * r->touch.settings.limits.lateral_force / probe->lateral_stiffness
+                : 0.0;
 }
 
 static void befall(ride *r, enum event event, nt_sample *s)
 {
     const double old = 3.0 * larger(r->touch.period, r->touch.supervisor.master_period);
     switch (event) {
-    case MASTER_NAN: s->master_position[NT_Z] = NAN; break;
-    case MASTER_X_NAN: s->master_position[NT_X] = NAN; break;
-    case OPERATOR_NAN: s->operator_force[NT_Z] = NAN; break;
-    case DEFLECTION_NAN: s->deflection[NT_Z] = NAN; break;
-    case LATERAL_NAN: s->deflection[NT_X] = NAN; break;
-    case STAGE_NAN: s->stage_position[NT_Z] = NAN; break;
-    case STAGE_X_NAN: s->stage_position[NT_X] = NAN; break;
-    case BAD_FRAME: s->flags = NT_SAMPLE_INVALID; break;
-    case BAD_MASTER: s->flags = NT_SAMPLE_INVALID | NT_SAMPLE_MASTER_ALONE; s->master_position[NT_Z] = 0.1; break;
-    case BAD_SLAVE: s->flags = NT_SAMPLE_INVALID | NT_SAMPLE_SLAVE_ALONE; s->deflection[NT_Z] = 1e-3; break;
-    case MASTER_LOST: s->flags = NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_INVALID | NT_SAMPLE_MASTER_ALONE; break;
-    case SLAVE_LOST: s->flags = NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_INVALID | NT_SAMPLE_SLAVE_ALONE; break;
-    case MASTER_SILENT: s->master_age = old; break;
-    case SLAVE_SILENT: s->age = old; break;
-    case STOP: s->flags = NT_SAMPLE_EMERGENCY_STOP; break;
-    case LIMIT_SWITCH: s->flags = NT_SAMPLE_LIMIT_SWITCH; break;
-    case SATURATED: s->flags = NT_SAMPLE_SATURATED; break;
-    case LATE: s->lateness = 2.0 * r->touch.period; break;
-    default: break;
+    case MASTER_NAN:
+        s->master_position[NT_Z] = NAN;
+        break;
+    case MASTER_X_NAN:
+        s->master_position[NT_X] = NAN;
+        break;
+    case OPERATOR_NAN:
+        s->operator_force[NT_Z] = NAN;
+        break;
+    case DEFLECTION_NAN:
+        s->deflection[NT_Z] = NAN;
+        break;
+    case LATERAL_NAN:
+        s->deflection[NT_X] = NAN;
+        break;
+    case STAGE_NAN:
+        s->stage_position[NT_Z] = NAN;
+        break;
+    case STAGE_X_NAN:
+        s->stage_position[NT_X] = NAN;
+        break;
+    case BAD_FRAME:
+        s->flags = NT_SAMPLE_INVALID;
+        break;
+    case BAD_MASTER:
+        s->flags = NT_SAMPLE_INVALID | NT_SAMPLE_MASTER_ALONE;
+        s->master_position[NT_Z] = 0.1;
+        break;
+    case BAD_SLAVE:
+        s->flags = NT_SAMPLE_INVALID | NT_SAMPLE_SLAVE_ALONE;
+        s->deflection[NT_Z] = 1e-3;
+        break;
+    case MASTER_LOST:
+        s->flags = NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_INVALID | NT_SAMPLE_MASTER_ALONE;
+        break;
+    case SLAVE_LOST:
+        s->flags = NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_INVALID | NT_SAMPLE_SLAVE_ALONE;
+        break;
+    case MASTER_SILENT:
+        s->master_age = old;
+        break;
+    case SLAVE_SILENT:
+        s->age = old;
+        break;
+    case STOP:
+        s->flags = NT_SAMPLE_EMERGENCY_STOP;
+        break;
+    case LIMIT_SWITCH:
+        s->flags = NT_SAMPLE_LIMIT_SWITCH;
+        break;
+    case SATURATED:
+        s->flags = NT_SAMPLE_SATURATED;
+        break;
+    case LATE:
+        s->lateness = 2.0 * r->touch.period;
+        break;
+    default:
+        break;
     }
 }
 

@@ -100,15 +100,42 @@ static void lose(void (*fault)(nt_sample *sample), int lost)
     assert_true(fabs(hurt.state.signals.smooth_force - whole.state.signals.smooth_force) < 1e-9);
 }
 
-static void lose_master(nt_sample *sample) { sample->master_position[NT_Z] = NAN; }
-static void lose_operator(nt_sample *sample) { sample->operator_force[NT_Z] = NAN; }
-static void lose_deflection(nt_sample *sample) { sample->deflection[NT_Z] = NAN; }
-static void lose_stage(nt_sample *sample) { sample->stage_position[NT_Z] = HUGE_VAL; }
-static void age_master(nt_sample *sample) { sample->master_age = 1.0; }
-static void age_slave(nt_sample *sample) { sample->age = 1.0; }
-static void blame_master(nt_sample *sample) { sample->flags = NT_SAMPLE_INVALID | NT_SAMPLE_MASTER_ALONE; }
-static void blame_slave(nt_sample *sample) { sample->flags = NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_SLAVE_ALONE; }
-static void blame_nobody(nt_sample *sample) { sample->flags = NT_SAMPLE_INVALID; }
+static void lose_master(nt_sample *sample)
+{
+    sample->master_position[NT_Z] = NAN;
+}
+static void lose_operator(nt_sample *sample)
+{
+    sample->operator_force[NT_Z] = NAN;
+}
+static void lose_deflection(nt_sample *sample)
+{
+    sample->deflection[NT_Z] = NAN;
+}
+static void lose_stage(nt_sample *sample)
+{
+    sample->stage_position[NT_Z] = HUGE_VAL;
+}
+static void age_master(nt_sample *sample)
+{
+    sample->master_age = 1.0;
+}
+static void age_slave(nt_sample *sample)
+{
+    sample->age = 1.0;
+}
+static void blame_master(nt_sample *sample)
+{
+    sample->flags = NT_SAMPLE_INVALID | NT_SAMPLE_MASTER_ALONE;
+}
+static void blame_slave(nt_sample *sample)
+{
+    sample->flags = NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_SLAVE_ALONE;
+}
+static void blame_nobody(nt_sample *sample)
+{
+    sample->flags = NT_SAMPLE_INVALID;
+}
 
 static void a_fault_of_one_channel_leaves_the_others(void **state)
 {

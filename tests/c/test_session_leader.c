@@ -284,7 +284,7 @@ static void what_a_leader_cannot_do_is_refused(void **state)
     nt_session_close(session);
     m = (metronome){.says = {.can = NT_LEADS_CLOCK | NT_IS_REAL, .axes = 1}, .last = UINT64_MAX};
     session = open_session(&setup);
-    assert_int_equal(nt_session_start(session, NT_PACE_WALL, 0), NT_E_UNSUPPORTED);
+    assert_int_equal(nt_session_start(session, NT_PACE_FREE, 0), NT_E_UNSUPPORTED);
     nt_session_close(session);
 }
 

@@ -116,8 +116,10 @@ static void play(const nt_module *master, const nt_module *slave)
     nt_session *session = open_session(&setup);
     if (reals > 0) /* preflight has kept its deadlines: 50 ticks of tare, 200 of a move */
         assert_true(seconds() - begun >= 249.0 / RATE);
-    assert_int_equal(nt_session_start(session, NT_PACE_WALL, 1), reals > 0 ? NT_E_UNSUPPORTED : NT_OK);
+    assert_int_equal(nt_session_start(session, NT_PACE_FREE, 1), reals > 0 ? NT_E_UNSUPPORTED : NT_OK);
     assert_int_equal(nt_session_halt(session), NT_OK);
+    if (is_real) /* what can hurt a sample runs by its deadlines alone */
+        assert_int_equal(nt_session_start(session, NT_PACE_WALL, 1), NT_E_UNSUPPORTED);
     if (!master->backend)
         press(session);
     assert_int_equal(nt_session_start(session, NT_PACE_HARD, 0), NT_OK);

@@ -170,7 +170,7 @@ class Host(Tasks):
             "scene": session.scene.to_dict(), "rig": session.rig.to_dict(), "settings": session.settings.to_dict(),
             "stiffness": self.hand.stiffness, "bound": plan.bound, "law": plan.contact_law,
             "warnings": [str(warning.text) for warning in plan.warnings], "margin": session.stability_margin,
-            "force": session.guarantee().force, "undo": self.undoable,
+            "force": session.guarantee().force, "hand": session.guarantee().hand.force, "undo": self.undoable,
             "redo": len(self.undone), "start": list(session.path[0]), "clearance": session.clearance, "name": self.name,
             "relative_accuracy": session.relative_accuracy, "zero": self.hand.zero,
             "size": list(map(float, self.subject.topography.size)),

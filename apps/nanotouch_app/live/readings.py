@@ -169,7 +169,9 @@ def _facts(seen: Seen) -> str:
     within = f"within {max(bound, 0.01):.2g} % (plan)" if math.isfinite(bound) else "no bound (plan)"
     margin = float(seen.world["margin"])
     told = "no loop closes through this hand" if not math.isfinite(margin) else f"margin {margin:.3g}"
-    return f"{touch}  ·  {within}  ·  {told}  ·  never above {digits(float(seen.world['force']), 'N')}"
+    most, hand = float(seen.world["force"]), float(seen.world.get("hand", 0.0))
+    pushed = f", {digits(hand, 'N')} at the hand" if hand > 0.0 else ""
+    return f"{touch}  ·  {within}  ·  {told}  ·  never above {digits(most, 'N')}{pushed}"
 
 
 def _stopped(state: int, bits: int) -> str:

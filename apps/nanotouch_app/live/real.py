@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``nanotouch live RIG.toml``: a session on the real halves that a rig file names, at hard pace. A window shows it,
-and leads the hand where no device does."""
+"""``nanotouch live RIG.toml``: a session on the real halves that a rig file names, at the pace that these ask for. A
+window shows it, and leads the hand where no device does."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import nanotouch as nt
 from nanotouch import rig_file
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.scene import read_tables
+from nanotouch.touch.options import PACE_REASONS
 from nanotouch.touch.session import settings_for_path
 
 from nanotouch_app.live import display
@@ -38,9 +39,10 @@ def touch(args: argparse.Namespace) -> int:
     session, leads = opened(file, path.parent)
     window = session.live(hand=leads)
     try:
-        session.start("hard")
+        session.start()
         hand = "your mouse leads the hand" if leads else "its device leads the hand, the window watches"
-        print(f"{path.name}: hard pace, {hand}; Q in the window leaves, Escape stops", flush=True)
+        print(f"{path.name}: {PACE_REASONS[session.pace]}; {hand}; Q in the window leaves, Escape stops", flush=True)
+        print(session.guarantee().hand, flush=True)
         if window.wait():
             raise Error("the window has died; the session has ended in order")
     finally:

@@ -368,6 +368,8 @@ class RigMaster(Section):
     """step of the master's position sensor, 0 for none [m], 0 .. 0.01"""
     max_force: float
     """motor limit, +- this [N], 0.001 .. 1000"""
+    max_speed: float
+    """of the hand that holds it: the shorter a stop's fade of the force [m/s], 0.0001 .. 10"""
     gauge: YesNo
     """whether an operator force sensor is fitted"""
     gauge_range: float
@@ -390,6 +392,7 @@ class RigMasterValues(TypedDict, total=False):
     travel: float
     resolution: float
     max_force: float
+    max_speed: float
     gauge: Literal["no", "yes"] | bool
     gauge_range: float
     gauge_noise: float

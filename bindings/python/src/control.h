@@ -22,5 +22,6 @@ struct OwnLaw {
 void set_control(nt_settings &settings, const std::string &name);
 // law must outlive whatever is made of the settings.
 void set_control(nt_settings &settings, OwnLaw &law);
+py::dict motor_bound_as_dict(const nt_motor_bound &bound);
 nt_mode mode_of(const std::string &name);
 std::string mode_name(nt_mode mode);

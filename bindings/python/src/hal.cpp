@@ -370,7 +370,7 @@ static py::tuple rehearse(const py::object &given, bool is_master, double period
     py::list said;
     for (const std::string &line : stage.said)
         said.append(text_of(line.c_str()));
-    return py::make_tuple(seen.readings, seen.oldest, said);
+    return py::make_tuple(seen.readings, seen.oldest, said, seen.same);
 }
 
 void bind_hal(py::module_ &module)

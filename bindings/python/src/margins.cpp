@@ -84,8 +84,22 @@ static py::dict resolution(const Rig &rig, const Settings &settings, double slav
     return out;
 }
 
+py::dict motor_bound_as_dict(const nt_motor_bound &bound)
+{
+    py::dict out;
+    out["force"] = bound.force;
+    out["speed"] = bound.speed;
+    out["fade_time"] = bound.fade_time;
+    out["delay"] = bound.delay;
+    out["energy"] = bound.energy;
+    return out;
+}
+
 void bind_margins(py::module_ &module)
 {
+    module.def("motor_bound", [](const Rig &rig, const Settings &settings) {
+        return motor_bound_as_dict(nt_motor_bound_compute(&rig.value, &settings.value));
+    });
     module.def("margins", &margins);
     module.def("calm", &calm);
     module.attr("CLEARLY_FELT") = NT_CLEARLY_FELT;

@@ -276,6 +276,8 @@ static void bind_facts(py::class_<Session> &type)
 {
     type.def_property_readonly("guarantee", &guarantee_of)
         .def_property_readonly(
+            "motor_bound", [](const Session &self) { return motor_bound_as_dict(nt_session_motor_bound(self.handle)); })
+        .def_property_readonly(
             "amounts",
             [](const Session &self) -> py::object { return self.amounts ? py::cast(*self.amounts) : py::none(); })
         .def_property_readonly("tare",

@@ -3,6 +3,9 @@
 #include "frames.h"
 #include "session.h"
 
+#include <cmath>
+#include <cstdio>
+
 #include <algorithm>
 
 // A column of numbers: where it lies in a record, and for vectors along which axis.
@@ -213,8 +216,19 @@ static void start(Session &self, int pace, uint64_t ticks)
                          nt_session_capabilities(self.handle, NT_HALF_SLAVE)->can;
     if (status == NT_E_UNSUPPORTED && pace == NT_PACE_HARD && can & NT_IS_SLOW)
         raise(status, "start: pace 'hard': a half that is written in Python runs at 'free' and 'wall' only");
-    if (status == NT_E_UNSUPPORTED && pace != NT_PACE_HARD && can & NT_IS_REAL)
-        raise(status, "start: a half that is real, whether it leads the clock or not, runs at pace 'hard' only");
+    if (status == NT_E_UNSUPPORTED && nt_session_pace(self.handle) == NT_PACE_HARD)
+        raise(status, "start: a real slave, whether it leads the clock or not, runs at pace 'hard' only");
+    if (status == NT_E_UNSUPPORTED)
+        raise(status, "start: a real master on a simulated slave runs at pace 'wall', or 'hard'");
+    if (status == NT_E_RANGE) {
+        const nt_wall_pace wall = nt_session_wall_pace(self.handle);
+        const nt_problem problem = {wall.margin.field, "", wall.margin.margin,
+                                    nt_session_setup_of(self.handle)->minimum_margin, INFINITY};
+        char late[96];
+        std::snprintf(late, sizeof late, "start: a force waits %.3g ms at pace 'wall' on this machine",
+                      1e3 * (wall.hold + wall.latency));
+        raise_on(status, problem, late);
+    }
     raise_on(status, "start");
 }
 
@@ -353,6 +367,16 @@ void bind_session_run(py::module_ &module, py::class_<Session> &type)
                                        "and since the last change");
                  raise_on(status, problem, "rewind");
              })
+        .def_property_readonly("pace",
+                               [](const Session &self) { return static_cast<int>(nt_session_pace(self.handle)); })
+        .def_property_readonly("wall_pace",
+                               [](const Session &self) {
+                                   const nt_wall_pace wall = nt_session_wall_pace(self.handle);
+                                   return py::make_tuple(wall.hold, wall.latency, wall.margin.margin);
+                               })
+        .def_property_readonly("since", [](const Session &self) { return nt_session_touch_state(self.handle)->since; })
+        .def_property_readonly("reasons",
+                               [](const Session &self) { return nt_session_touch_state(self.handle)->command.reasons; })
         .def_property_readonly(
             "state",
             [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->supervisor.state); })

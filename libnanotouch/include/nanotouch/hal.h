@@ -88,6 +88,7 @@ typedef struct nt_rehearsed {
     nt_capabilities capabilities; /* its channels belong to the backend: read them before it is unloaded */
     uint64_t readings;            /* new ones */
     double oldest;                /* largest age of a valid reading [s] */
+    uint32_t same;                /* channels (NT_READS_*) whose readings, fifty at least, were one number all along */
 } nt_rehearsed;
 
 /* Opens and closes a half, then goes twice through its whole life: open, describe, configure, arm, some periods,

@@ -193,17 +193,30 @@ NT_API NT_REALTIME nt_status nt_session_step(nt_session *session, const nt_input
 
 typedef enum nt_pace {
     NT_PACE_FREE, /* as fast as it goes; where the ring is full it waits for a reader */
-    NT_PACE_WALL, /* at the pace of a clock: wakes each millisecond and runs the ticks that are due. It slows down where
-                     it cannot keep up, and never skips; nothing real may be driven */
+    NT_PACE_WALL, /* at the pace of a clock: wakes each millisecond, or as often as a real master needs, and runs the
+                     ticks that are due. It slows down where it cannot keep up, and never skips; for a slave that is
+                     simulated */
     NT_PACE_HARD  /* each tick at its deadline; lateness reaches the supervisor; a full ring is counted */
 } nt_pace;
+/* The pace that its devices ask for: hard where a real slave can hurt a sample; wall where a real master alone is
+ * driven; else free. */
+NT_API nt_pace nt_session_pace(const nt_session *session);
+
+/* At wall pace a motor force waits for the next wake-up, and for the machine to be in time with it. */
+typedef struct nt_wall_pace {
+    double hold;       /* between two wake-ups [s] */
+    double latency;    /* of nine wake-ups in ten no more, as measured when it was last started; 0 before that [s] */
+    nt_verdict margin; /* of the loop with both, as then judged; infinite before that */
+} nt_wall_pace;
+/* Of one with a real master on a simulated slave; all 0 of others, and the margin infinite. */
+NT_API nt_wall_pace nt_session_wall_pace(const nt_session *session);
 
 /* What a run has been so far. */
 typedef struct nt_progress {
     uint64_t ticks;     /* run in all */
     uint64_t dropped;   /* records that a full ring has lost; hard pace only */
     double slowdown;    /* wall pace: time on the clock over time in the session, lately; 1 where it keeps up [-] */
-    double worst_delay; /* hard pace: of a wake-up [s] */
+    double worst_delay; /* wall and hard pace: of a wake-up [s] */
     int runs;           /* 1: in its thread */
     int paused;         /* 1: asked for */
     int stands;         /* 1: paused, no tick runs any more, and no granted step is left */
@@ -211,7 +224,8 @@ typedef struct nt_progress {
 } nt_progress;
 
 /* Starts the thread; `ticks` 0: until nt_session_halt. NT_E_STATE if it runs already; NT_E_UNSUPPORTED for a real half
- * in a pace other than hard, or a Python one in hard pace; NT_E_NO_MEMORY; NT_E_CAPACITY as nt_session_aim. */
+ * in a pace that it does not allow, or a Python one in hard pace; NT_E_RANGE for a real master at wall pace whose
+ * margin is too small (nt_session_wall_pace); NT_E_NO_MEMORY; NT_E_CAPACITY as nt_session_aim. */
 NT_API nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks);
 /* Ends the thread between two ticks and waits for it. What it ended by itself with, NT_OK otherwise. */
 NT_API nt_status nt_session_halt(nt_session *session);
@@ -304,6 +318,8 @@ NT_API nt_verdict nt_session_tap(const nt_session *session);
 NT_API nt_reach nt_session_reach(const nt_session *session);
 /* What holds whatever the operator does; to be read before the first tick. */
 NT_API nt_guarantee nt_session_guarantee(const nt_session *session);
+/* The same of the hand; at wall pace a force is held longer (nt_session_wall_pace), and that counts. */
+NT_API nt_motor_bound nt_session_motor_bound(const nt_session *session);
 /* What preflight has taken off the sensors. */
 NT_API nt_tare nt_session_tare(const nt_session *session);
 /* Height of the cantilever base at x_s = 0 [m]: z_b = start_height - x_s. NaN where the slave is not simulated. */

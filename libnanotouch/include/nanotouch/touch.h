@@ -70,14 +70,14 @@ typedef struct nt_touch_state {
     nt_passivity_state passivity_sideways[2]; /* of one gain: to scale x and y apart would give energy */
     nt_rescale_state rescale;
     nt_stage_loop_state stage_loop;
-    nt_signals signals;                  /* what the law is given */
-    double deflections[2];               /* of the last two valid samples [m] */
-    double amplitude, lag;               /* of mode tapping, of the last valid sample [m], [rad] */
-    nt_sum reference;                    /* where the stage shall be [m] */
-    nt_sum offset;                       /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
-    double stretch;                      /* of the virtual coupling, at the operator's scale [m] */
-    int clutch_open;                     /* the master moves alone */
-    nt_sum engaged;                      /* 0 .. 1, fades the force in and out [-] */
+    nt_signals signals;    /* what the law is given */
+    double deflections[2]; /* of the last two valid samples [m] */
+    double amplitude, lag; /* of mode tapping, of the last valid sample [m], [rad] */
+    nt_sum reference;      /* where the stage shall be [m] */
+    nt_sum offset;         /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
+    double stretch;        /* of the virtual coupling, at the operator's scale [m] */
+    int clutch_open;       /* the master moves alone */
+    nt_sum engaged;        /* 0 .. 1, fades the force in and out [-] */
     nt_fade fade;
     nt_gaps gaps;
     double motor_force;                  /* last command [N] */
@@ -92,6 +92,7 @@ typedef struct nt_touch_state {
     nt_sum target_time;                  /* left to get there [s] */
     double sent[NT_TOUCH_SENT][NT_AXES]; /* motor forces of the last ticks, by their number [N] */
     nt_command command;                  /* last command */
+    uint64_t since;                      /* the tick in which the safety state became what it is */
     uint64_t ticks;
 } nt_touch_state;
 

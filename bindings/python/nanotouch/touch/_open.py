@@ -14,6 +14,7 @@ from nanotouch.errors import DeviceError, InvalidValue
 from nanotouch.manipulation import Laid
 from nanotouch.plasticity import Dent
 from nanotouch.scene import Rig, Scene, Settings
+from nanotouch.touch._stopped import reasons_of
 from nanotouch.touch.options import PACES, Pace, Progress
 
 Described = TypeVar("Described", Scene, Settings)
@@ -86,12 +87,27 @@ class Runs:
             raise InvalidValue(f"duration = {duration} s: it must be a time of 0 s or more, up to {LONGEST:g} s")
         return round(duration * self.rate)
 
-    def start(self, pace: Pace = "wall", duration: float | None = None) -> None:
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why it is in its state, in words; some are flags of a session that runs."""
+        return reasons_of(self.core.reasons)
+
+    @property
+    def pace(self) -> Pace:
+        """That its devices ask for: ``"hard"`` where a real slave can hurt a sample; ``"wall"`` where only a real
+        master is driven, and lateness does no more than slow the clock; else ``"free"``."""
+        return PACES[self.core.pace]
+
+    def start(self, pace: Pace | None = None, duration: float | None = None) -> None:
         """Run in a thread of its own, without the GIL, until :meth:`halt` or for a time [s] of the session.
 
         ``"free"``: as fast as it goes. ``"wall"``: at the pace of a clock, slower where the machine lags. Both
-        wait for :meth:`read` when the ring is full. ``"hard"``: each tick at its deadline, for halves that are real.
+        wait for :meth:`read` when the ring is full. ``"hard"``: each tick at its deadline, for a real slave. By default
+        :attr:`pace`, and ``"wall"`` where nothing is real. A real master at ``"wall"`` holds each force until the
+        machine wakes up again: that is measured, and counts in the margin and in what is promised to the hand.
         """
+        if pace is None:
+            pace = "wall" if self.pace == "free" else self.pace
         if pace not in PACES:
             raise InvalidValue(f"pace {pace!r}: valid are {', '.join(PACES)}")
         if duration is not None and not duration > 0.0:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A script, block by block: as fast as it goes, or at hard pace where a half is real."""
+"""A script, block by block: as fast as it goes, or by the clock where a device is real."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Played(Protocol):
     rate: float
 
     @property
-    def halves(self) -> Any: ...
+    def pace(self) -> Any: ...
     @property
     def progress(self) -> Any: ...
     def start(self, pace: Any, duration: float | None) -> None: ...
@@ -45,9 +45,9 @@ def played(session: Played, script: Sequence[Input | Hold]) -> Generator[tuple[C
     """Each block as it comes, with the share of the script that is done. A real half moves by the clock, in a thread
     that ends with the script, or when this is closed."""
     ticks = [round(step.duration * session.rate) for step in script]
-    is_real, done = any(half.real for half in session.halves), 0
+    is_real, done = session.pace != "free", 0
     if is_real:
-        session.start("hard", max(sum(ticks), 1) / session.rate)
+        session.start(None, max(sum(ticks), 1) / session.rate)
     try:
         for step, left in zip(script, ticks, strict=True):
             session.aim(step)

@@ -16,6 +16,7 @@ The guide is docs/hal.md. A half in Python runs at free and wall pace.
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike, fspath
@@ -282,6 +283,16 @@ REPLAYED = {
 """the columns that each half measured"""
 
 
+QUIET = {
+    5: "the deflection is the same number in every reading: a session takes that for a dead sensor, and latches "
+       "(sensor stuck). Of a sensor without noise declare that: Rig(probe={'noise': 0.0}), in a rig file noise_V = 0 "
+       "under [probe]; or the step of its converter, above its noise, as probe.resolution",
+    6: "the amplitude is the same number in every reading: a session takes that for a dead sensor, and latches (sensor "
+       "stuck). Of a lock-in amplifier without noise declare that: settings.tap.noise = 0",
+}  # fmt: skip
+"""of a slave's channels by their bit, that have shown no noise"""
+
+
 class Rehearsed(NamedTuple):
     """What was seen in a rehearsal."""
 
@@ -291,6 +302,8 @@ class Rehearsed(NamedTuple):
     """largest age of a valid reading [s]"""
     said: list[str]
     """what it told the user"""
+    advice: tuple[str, ...]
+    """what to declare, so that a session does not take it for broken"""
 
 
 def rehearse(
@@ -328,7 +341,11 @@ def rehearse(
     if not period <= duration <= 3600.0:
         raise InvalidValue(f"duration = {duration} s: valid is {period:g} .. 3600 s")
     is_master = not (slave or isinstance(half, Slave))
-    return Rehearsed(*_core.rehearse(half, is_master, period, round(duration / period), real_time))
+    readings, oldest, said, same = _core.rehearse(half, is_master, period, round(duration / period), real_time)
+    advice = tuple(words for bit, words in QUIET.items() if not is_master and same >> bit & 1)
+    for words in advice:
+        warnings.warn(words, stacklevel=2)
+    return Rehearsed(readings, oldest, said, advice)
 
 
 class GpioLine(NamedTuple):

@@ -16,14 +16,15 @@ from nanotouch.errors import InvalidValue
 from nanotouch.scene import Rig, Settings
 from nanotouch.scene.plan import Plan
 from nanotouch.touch._calm import CLEARLY_FELT, RINGING_MOST, Calm, calm
+from nanotouch.touch._motor_bound import MotorBound, motor_bound
 from nanotouch.touch._path import MODES, Mode, core_mode
 from nanotouch.touch._response import Response, passive_up_to, response
 from nanotouch.touch.record import Recording
 
 __all__ = [
     "CLEARLY_FELT", "HAND_BAND", "MINIMUM", "RINGING_MOST", "UNKNOWN", "Calm", "Felt", "ForceRange", "Margins",
-    "Resolution", "Response", "Width", "calm", "compute", "felt_alpha_f", "force_range", "heuristic_alpha_f",
-    "of_own_law", "of_recording", "resolution", "response", "z_width",
+    "MotorBound", "Resolution", "Response", "Width", "calm", "compute", "felt_alpha_f", "force_range",
+    "heuristic_alpha_f", "motor_bound", "of_own_law", "of_recording", "resolution", "response", "z_width",
 ]  # fmt: skip
 Floats = NDArray[np.float64]
 MINIMUM = 1.5

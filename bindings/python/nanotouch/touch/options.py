@@ -34,6 +34,12 @@ ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
 Pace = Literal["free", "wall", "hard"]
 RING_CAPACITY = 65536
 PACES: tuple[Pace, ...] = get_args(Pace)
+PACE_REASONS: dict[Pace, str] = {
+    "free": "free pace, for nothing of it is real",
+    "wall": "wall pace, for its master is real and its slave simulated: lateness slows the clock",
+    "hard": "hard pace, for its slave is real: each tick at its deadline",
+}
+"""why a session has its pace"""
 
 
 class Options(TypedDict, total=False):
@@ -95,7 +101,7 @@ class Progress(NamedTuple):
     slowdown: float
     """wall pace: time on the clock over time in the session, lately; 1 where it keeps up"""
     worst_delay: float
-    """hard pace: of a wake-up [s]"""
+    """wall and hard pace: of a wake-up [s]"""
     runs: bool
     paused: bool
     """asked for"""

@@ -26,7 +26,7 @@ from nanotouch._io.writing import replacing as replacing
 from nanotouch._io.writing import write_csv as write_csv
 from nanotouch.errors import Error, InvalidValue, ReadError, require
 from nanotouch.plasticity import Dent, dents_of
-from nanotouch.touch import _recording_file
+from nanotouch.touch import _recording_file, _stopped
 from nanotouch.touch._control import ControlLaw
 from nanotouch.touch._recorder import INCOMPLETE, recovered_name
 from nanotouch.touch._recorder import Metadata as Metadata
@@ -92,7 +92,9 @@ class Recording(Columns):
 
     def __repr__(self) -> str:
         span = f"{self.time[0]:.6g} s to {self.time[-1]:.6g} s" if len(self) else "empty"
-        return f"Recording({len(self)} rows, {span}, columns: {', '.join(self.columns)})"
+        ended = _stopped.of_columns(self.columns)
+        stopped = f"{ended}, " if ended not in ("", "RUN") else ""
+        return f"Recording({len(self)} rows, {span}, {stopped}columns: {', '.join(self.columns)})"
 
     def _repr_html_(self) -> str:
         rows = [(name, COLUMNS[name].unit, *_ends(values), COLUMNS[name].doc) for name, values in self.columns.items()]

@@ -17,7 +17,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.scene.plan import Plan
 from nanotouch.scene.surface import Surface
-from nanotouch.touch import _live, _told, margins
+from nanotouch.touch import _live, _stopped, _told, margins
 from nanotouch.touch._control import CONTROLS, Control, ControlLaw, choose_control
 from nanotouch.touch._open import TOLD, Frozen, Runs, as_now
 from nanotouch.touch._path import MODES, Mode, checked_path, core_mode
@@ -190,7 +190,7 @@ class Session(Runs, Frozen):
 
     def guarantee(self) -> Guarantee:
         """What holds whatever the operator does, wherever the tip can be led; to be read before anything moves."""
-        return Guarantee(**self.core.guarantee)
+        return Guarantee(**self.core.guarantee, hand=margins.MotorBound(**self.core.motor_bound))
 
     @property
     def force_overshoot(self) -> float:
@@ -252,7 +252,7 @@ class Session(Runs, Frozen):
         progress: Callable[[float], None] | None = None,
         keep: bool = True,
     ) -> Recording:
-        """Play an operator's script from here on; where a half is real, at hard pace.
+        """Play an operator's script from here on; where a device is real, at :attr:`pace`. Warns where it was stopped.
 
         Parameters
         ----------
@@ -289,6 +289,7 @@ class Session(Runs, Frozen):
         metadata = self.metadata()
         if writer is not None:
             writer.update(metadata)
+        _stopped.warn(columns, _told.stopped(self))
         own = {REWINDS_BEFORE: begun} if begun else {}
         return Recording(columns, metadata | own | ({ROWS: len(columns["time"])} if keep else {}))
 

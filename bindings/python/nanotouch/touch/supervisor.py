@@ -9,11 +9,20 @@ from typing import Any, NamedTuple
 from nanotouch import _core
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Rig, Settings
+from nanotouch.touch._motor_bound import MotorBound
+from nanotouch.touch._stopped import REASONS as REASONS
+from nanotouch.touch._stopped import reasons_of
 from nanotouch.touch.columns import STATES
 
-#: names of the bits of ``reasons``
-REASONS: tuple[str, ...] = _core.reasons
-FLAGS = {"emergency_stop": 1, "limit_switch": 2, "invalid": 4, "saturated": 8, "device_lost": 16}
+FLAGS = {
+    "emergency_stop": 1,
+    "limit_switch": 2,
+    "invalid": 4,
+    "saturated": 8,
+    "device_lost": 16,
+    "master_alone": 32,
+    "slave_alone": 64,
+}
 
 
 class Verdict(NamedTuple):
@@ -63,6 +72,8 @@ class Guarantee(NamedTuple):
     """a stop lifts from the drift of the frame for this long [s]"""
     frame_drift: float
     """a stop that cannot lift is pressed by this much more in a second [N/s]"""
+    hand: MotorBound
+    """what is promised to the hand"""
 
     @property
     def limit(self) -> float:
@@ -101,13 +112,14 @@ class Guarantee(NamedTuple):
             f"these are calibration {self.calibration * 1e9:.3g}, motion {self.motion * 1e9:.3g}, ringing "
             f"{self.ringing * 1e9:.3g}, snap-in {self.snap_in * 1e9:.3g}, noise {self.noise * 1e9:.3g}{tare} nN; and "
             f"{self.zero_drift * 1e9:.3g} nN more for each second since the tare",
+            str(self.hand),
             f"indentation at most {self.indentation * 1e9:.4g} nm; reaction within {self.reaction_time * 1e3:.2f} ms",
             failing,
             f"after a stop help is needed within {_long(self.help_time)}; at once if the stage does not lift "
             f"({self.frame_drift * 1e9:.3g} nN more each second)",
         ]
         if self.lateral_force > 0.0 and (self.moves_sideways or self.lateral_force > 1e-3 * self.force):
-            lines.insert(2, f"sideways at most {self.lateral_force * 1e9:.4g} nN")
+            lines.insert(3, f"sideways at most {self.lateral_force * 1e9:.4g} nN")
         if not self.moves_sideways:
             lines.append("the tip stays at its place, for the stage has one axis")
         if self.warning is not None:
@@ -179,7 +191,7 @@ class Supervisor:
         if math.isnan(reference):
             reference = stage_position
         state, reasons = self._core.step(numbers, reference, moves_sideways, unstable)
-        return Verdict(STATES[state], tuple(name for bit, name in enumerate(REASONS) if reasons >> bit & 1))
+        return Verdict(STATES[state], reasons_of(reasons))
 
     def arm(self, confirmed: bool = False) -> None:
         """Go back to RUN after RETRACT. After LATCHED this needs ``confirmed``: somebody has looked at the rig."""
