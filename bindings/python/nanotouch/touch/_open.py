@@ -15,6 +15,7 @@ from nanotouch.manipulation import Laid
 from nanotouch.plasticity import Dent
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.touch._stopped import reasons_of
+from nanotouch.touch.columns import STATES
 from nanotouch.touch.options import PACES, Pace, Progress
 
 Described = TypeVar("Described", Scene, Settings)
@@ -86,6 +87,11 @@ class Runs:
         if not 0.0 <= duration <= LONGEST:
             raise InvalidValue(f"duration = {duration} s: it must be a time of 0 s or more, up to {LONGEST:g} s")
         return round(duration * self.rate)
+
+    @property
+    def state(self) -> str:
+        """RUN, HOLD, RETRACT or LATCHED after the last tick."""
+        return STATES[self.core.state]
 
     @property
     def reasons(self) -> tuple[str, ...]:

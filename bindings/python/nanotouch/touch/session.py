@@ -295,11 +295,6 @@ class Session(Runs, Frozen):
 
     live = _live.watch
 
-    @property
-    def state(self) -> str:
-        """RUN, HOLD, RETRACT or LATCHED after the last tick."""
-        return STATES[self.core.state]
-
     __repr__ = _told.in_a_line
     _repr_html_ = _told.as_html
 
