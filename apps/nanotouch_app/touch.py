@@ -5,6 +5,7 @@ and drawn. A scene that is a rig file moves its real halves, by the same script.
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -235,7 +236,11 @@ def _record(session: nt.Session, duration: float | None, out: Path) -> nt.Record
                 if done < 1.0:
                     check()
 
-            return session.run(duration, writer=writer, progress=after_block)
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                recording = session.run(duration, writer=writer, progress=after_block)
+        print("".join(f"WARNING: {warning.message}\n" for warning in caught), end="")
+        return recording
     except stop.Stopped as stopped:
         with suppress(nt.Error):  # what counts is told
             if writer.rows:

@@ -253,7 +253,10 @@ def test_the_command_leads_a_real_stage_at_hard_pace(screen: str, tmp_path: Path
     command = [sys.executable, "-m", "nanotouch_app", "live", str(_real_stage(tmp_path)), "--allow-code"]
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as view:
         assert view.stdout is not None
-        assert "rig.toml: hard pace, your mouse leads the hand" in view.stdout.readline()
+        said = view.stdout.readline()
+        assert "rig.toml: hard pace, for its slave is real" in said
+        assert "your mouse leads the hand" in said
+        assert "force on the hand: none" in view.stdout.readline()
         observer, end = nt.frames.attach(f"session-{view.pid}-1"), time.monotonic() + PATIENCE
         subprocess.run(["xdotool", "mousemove", "440", "380"], env=environment, check=True)
         start = None

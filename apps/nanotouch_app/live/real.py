@@ -41,7 +41,8 @@ def touch(args: argparse.Namespace) -> int:
     try:
         session.start()
         hand = "your mouse leads the hand" if leads else "its device leads the hand, the window watches"
-        print(f"{path.name}: {PACE_REASONS[session.pace]}; {hand}; Q in the window leaves, Escape stops", flush=True)
+        pace = PACE_REASONS["hard" if session.pace == "hard" else "wall"]
+        print(f"{path.name}: {pace}; {hand}; Q in the window leaves, Escape stops", flush=True)
         print(session.guarantee().hand, flush=True)
         if window.wait():
             raise Error("the window has died; the session has ended in order")
