@@ -8,7 +8,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import margins
-from nanotouch.hal import Capabilities, Channel, Reading
+from nanotouch.touch.hal import Capabilities, Channel, Reading
 from nanotouch.touch.operator import Input
 from numpy.typing import NDArray
 

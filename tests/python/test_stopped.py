@@ -7,8 +7,8 @@ import warnings
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch.hal import Capabilities, Reading
 from nanotouch.touch.faults import KINDS
+from nanotouch.touch.hal import Capabilities, Reading
 from nanotouch.touch.operator import Input
 from nanotouch.touch.supervisor import REASONS
 

@@ -28,8 +28,8 @@ class MotorBound(NamedTuple):
         if self.force == 0.0:
             return "force on the hand: none, the master has no motor"
         return (
-            f"force on the hand at most {self.force:.4g} N; after any event it never rises, is gone within "
-            f"{(self.fade_time + self.delay) * 1e3:.3g} ms and gives the hand at most {self.energy * 1e3:.3g} mJ"
+            f"force on the hand at most {self.force:.4g} N; after any event it never rises, ends within "
+            f"{(self.fade_time + self.delay) * 1e3:.3g} ms, gives at most {self.energy * 1e3:.3g} mJ"
         )
 
 
