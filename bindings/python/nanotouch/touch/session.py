@@ -25,7 +25,6 @@ from nanotouch.touch._plant import ProbeModel, plant_options
 from nanotouch.touch._play import BLOCK_TICKS, joined, played
 from nanotouch.touch._recorder import REWINDS_BEFORE, ROWS, rewinds
 from nanotouch.touch._sideways import Sideways, margins_of, sideways_of
-from nanotouch.touch.columns import STATES
 from nanotouch.touch.faults import Faults
 from nanotouch.touch.hal import Halves, halves_of
 from nanotouch.touch.margins import Calm, Margins
