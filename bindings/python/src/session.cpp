@@ -108,7 +108,7 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     made->properties = options["properties"].cast<std::shared_ptr<Properties>>();
     setup.properties = made->properties ? &made->properties->properties : nullptr;
     const Array path = options["path"].cast<Array>();
-    if (options["declared"].cast<bool>() || rig.value.stage.axes == 1.0) {
+    if (rig.value.stage.axes == 1.0) { // else it may be led anywhere: by inputs, scans, clients
         setup.path = path.data();
         setup.path_count = static_cast<long>(path.shape(0));
     }

@@ -60,9 +60,8 @@ class Session(Runs, Frozen):
         lever, as ``settings.tap`` says.
     path : sequence of (x, y), optional
         Where the tip starts and goes [m]: at least two points for ``"scan"`` and ``"topography"``, one otherwise. By
-        default the middle of the surface, or a line across it at mid-height. Several points that are given keep a
-        master of one axis over a surface within the rectangle around them: what is promised holds there, and inputs
-        beyond are refused. Otherwise it holds wherever the tip can be led.
+        default the middle of the surface, or a line across it at mid-height. Inputs, scans and clients may lead the
+        tip beyond it, so that it narrows nothing of what is promised.
     settings : Settings, optional
         Gains and limits; by default those of :func:`settings_for_path` for the relief along the path and up to the
         scene's largest load, with the sample's pull-off clearly felt (:func:`nanotouch.touch.margins.felt_alpha_f`).
@@ -112,7 +111,6 @@ class Session(Runs, Frozen):
                 self._scene.core, self.rig.core, wanted.core, {
                     **dict(zip(("surface", "radii", "properties"), parts, strict=True)),
                     "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
-                    "declared": path is not None and len(self.path) > 1,
                     "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
                     "minimum_margin": self.minimum_margin, "relative_accuracy": self.relative_accuracy,
                     "preflight": options.get("preflight", True), "law": control if callable(control) else None,
