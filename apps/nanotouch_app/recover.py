@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Finish what a killed process left of a recording: every whole block, marked as incomplete. FILE stays as it is."""
+"""Give back every whole block of a recording that a killed process left, or that is damaged, marked as incomplete with
+what is lost. FILE stays as it is."""
 
 from __future__ import annotations
 

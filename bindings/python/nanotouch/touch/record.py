@@ -216,8 +216,8 @@ def is_recording(path: str | os.PathLike[str]) -> bool:
 
 
 def read(path: str | os.PathLike[str], *, untrusted: bool | None = None) -> Recording:
-    """Read a recording. A damaged or truncated file gives the whole blocks before the damage, with a warning, and is
-    marked as incomplete.
+    """Read a recording. A damaged or truncated file gives every whole block, with a warning that says what is missing,
+    and is marked as incomplete.
 
     Parameters
     ----------
@@ -235,13 +235,14 @@ def read(path: str | os.PathLike[str], *, untrusted: bool | None = None) -> Reco
         parts = _recording_file.parts_of(file)
     metadata, damage = dict(parts["metadata"]), str(parts.get("damage", ""))
     if damage:
-        metadata.setdefault(INCOMPLETE, damage)
+        before = metadata.get(INCOMPLETE)
+        metadata[INCOMPLETE] = damage if before is None else f"{before}; {damage}"
     try:
         recording = Recording(parts["columns"], metadata)
     except InvalidValue as error:
         raise ReadError(f"{path} is not a recording of nanotouch: {error}") from error
     if damage:
-        warnings.warn(f"{path} is damaged ({damage}); {len(recording)} rows before the damage were read", stacklevel=2)
+        warnings.warn(f"{path} is damaged ({damage}); {len(recording)} rows were read", stacklevel=2)
     return recording
 
 

@@ -16,6 +16,7 @@ from nanotouch.scene import Rig, Settings
 from nanotouch.touch._control import CONTROLS, ControlLaw
 from nanotouch.touch._path import MODES, core_mode
 from nanotouch.touch._recorder import REWINDS_BEFORE, ROWS, rewinds
+from nanotouch.touch._recording_file import LOST_AFTER
 from nanotouch.touch.columns import SIDEWAYS, TAPPING
 from nanotouch.touch.record import Recording
 
@@ -88,6 +89,8 @@ def without_rewinds(recording: Recording) -> Recording:
         raise InvalidValue(f"the recording's metadata cannot be read: {error}") from error
     if not rewinds(events):
         return recording
+    if recording.metadata.get(LOST_AFTER):
+        raise InvalidValue("the recording was rewound and has lost blocks: which of its rows hold is not known")
     ticks = np.rint(recording.time * recording.parameter("loop_rate"))
     rows, line = _line(events, ticks, before)
     found = recording[rows]
