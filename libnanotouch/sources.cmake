@@ -82,6 +82,7 @@ set(nanotouch_sources_scene
     scene/demand.c
     scene/distance.c
     scene/elastic.c
+    scene/elastic_contact.c
     scene/facts.c
     scene/flank.c
     scene/force_table.c

@@ -4,6 +4,7 @@
 
 #include "nanotouch/forces.h"
 #include "nanotouch/scene.h"
+#include "scene/parts.h"
 
 nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene)
 {
@@ -51,6 +52,44 @@ static double work_of(const nt_scene *scene, double sought)
                : adhesion->work_of_adhesion;
 }
 
+#define FARTHEST_ATOMS 1e-9 /* apart in contact: beyond it a value of the scene is wrong [m] */
+
+/* The least that w of the solids can be; of a measured pull-off force, that of rigid bodies. */
+static double least_work(const nt_scene *scene)
+{
+    const nt_adhesion *adhesion = &scene->adhesion;
+    if (adhesion->given == NT_ADHESION_GIVEN_PULL_OFF)
+        return adhesion->pull_off_force / (2.0 * NT_PI * scene->tip.radius);
+    return work_of(scene, 0.0);
+}
+
+/* Whether van der Waals is a part of w. */
+static int has_part(const nt_scene *scene)
+{
+    const nt_shape_kind shape = scene->tip.shape;
+    return nt_scene_adhesion_source(scene) == NT_ADHESION_SOLID && shape != NT_SHAPE_CONE && shape != NT_SHAPE_PUNCH;
+}
+
+double nt_plan_atomic_distance(const nt_scene *scene)
+{
+    const double given = scene->adhesion.equilibrium_distance, H = scene->adhesion.hamaker_constant;
+    if (!has_part(scene))
+        return given;
+    const double all = sqrt(H / (12.0 * NT_PI * least_work(scene))) - 0.5 * scene->sample.roughness;
+    return all > given && all <= FARTHEST_ATOMS ? all : given;
+}
+
+nt_status nt_plan_check_distance(const nt_scene *scene, nt_problem *problem)
+{
+    const double farthest = fmax(FARTHEST_ATOMS, scene->adhesion.equilibrium_distance) + 0.5 * scene->sample.roughness;
+    const double most = 12.0 * NT_PI * farthest * farthest * least_work(scene), H = scene->adhesion.hamaker_constant;
+    if (!has_part(scene) || scene->adhesion.given == NT_ADHESION_GIVEN_PULL_OFF || H <= most * (1.0 + 1e-12))
+        return NT_OK;
+    if (problem)
+        *problem = (nt_problem){"adhesion.hamaker_constant", "J", H, 0.0, most};
+    return NT_E_RANGE;
+}
+
 nt_contact nt_scene_contact(const nt_scene *scene, double work_of_adhesion)
 {
     const nt_material tip = {scene->tip.youngs_modulus, scene->tip.poisson_ratio};
@@ -62,6 +101,6 @@ nt_contact nt_scene_contact(const nt_scene *scene, double work_of_adhesion)
     const double w = contact.work_of_adhesion = work_of(scene, work_of_adhesion);
     contact.cohesive_stress = source == NT_ADHESION_MENISCUS /* over 2 r1, the Laplace pressure gamma_L/r1 (E12) */
                                   ? w / (2.0 * nt_scene_meniscus_radius(scene))
-                                  : nt_cohesive_stress_atomic(w, scene->adhesion.equilibrium_distance);
+                                  : nt_cohesive_stress_atomic(w, nt_plan_atomic_distance(scene));
     return contact;
 }

@@ -2,6 +2,7 @@
  * How far apart two laws of contact are over a scene's range, and the scale S that a plan's errors are measured by. */
 #include <math.h>
 
+#include "scene/deformation/deform.h"
 #include "scene/parts.h"
 
 double nt_plan_pick(nt_law_value value, nt_quantity quantity)
@@ -9,9 +10,26 @@ double nt_plan_pick(nt_law_value value, nt_quantity quantity)
     return quantity == NT_QUANTITY_STIFFNESS ? value.k : quantity == NT_QUANTITY_RADIUS ? value.a : value.F;
 }
 
+void nt_plan_visit(nt_plan *plan, const nt_scene *scene)
+{
+    const double nearest = scene->range.minimum_gap;
+    plan->visits_contact = nearest <= fmax(nt_plan_contact_reach(plan), 0.0);
+    plan->visited_pull = plan->visited_push = plan->visited_stiffness = 0.0;
+    for (double gap = NT_DEFORM_FARTHEST; !plan->visits_contact && gap > nearest;) {
+        gap = fmax(nt_elastic_nearer(plan, gap), nearest);
+        const nt_law_value beside = nt_plan_beside_at(plan, gap);
+        plan->visited_pull = fmax(plan->visited_pull, -beside.F);
+        plan->visited_push = fmax(plan->visited_push, beside.F);
+        plan->visited_stiffness = fmax(plan->visited_stiffness, fabs(beside.k));
+    }
+    plan->visited_pull = nt_plan_known_pull(plan, plan->visited_pull);
+}
+
 /* What pulls on small forces: everything on, or contact alone, which repulsion may hide; 0 where nothing does. */
 static double pull_of(const nt_plan *plan)
 {
+    if (!plan->visits_contact)
+        return plan->visited_pull;
     return fmax(plan->contact_pull, nt_plan_contact_pull_off(plan));
 }
 
@@ -31,35 +49,44 @@ static double largest_radius(const nt_plan *plan)
     return nt_plan_contact_eval(plan, nt_plan_contact_form(plan), plan->largest_indentation).a;
 }
 
+/* What forces are measured by that are not contact's own: the pull, and where nothing pulls to speak of, a part of the
+ * largest load. Out of contact that is the push at the smallest gap, if it is less. */
+static double scale_of_force(const nt_plan *plan, double maximum_load)
+{
+    const double pull = pull_of(plan), push = fmin(plan->visited_push, maximum_load);
+    const double apart = fmax(pull, SMALL_LOAD * push);
+    if (plan->visits_contact || !(apart > 0.0))
+        return pull > 0.0 ? pull : SMALL_LOAD * maximum_load;
+    return apart;
+}
+
 double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
 {
-    const double pull = pull_of(plan);
     const int maugis = nt_plan_contact_form(plan) == NT_FORM_EXACT;
     const nt_maugis *m = &plan->maugis;
     const double accuracy = plan->demand.relative_accuracy;
     switch (plan->demand.quantity) {
     case NT_QUANTITY_STIFFNESS:
+        if (plan->visited_stiffness > 0.0)
+            return plan->visited_stiffness;
         return maugis ? m->load_scale / m->indentation_scale : plan->maximum_stiffness;
     case NT_QUANTITY_RADIUS:
         return maugis ? m->folds.zero_load_radius * m->radius_scale : largest_radius(plan);
     case NT_QUANTITY_FOLDS:
         return fmax(fabs(plan->release_gap), plan->length);
     default:
-        return fmax(pull > 0.0 ? pull : SMALL_LOAD * maximum_load,
-                    accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
+        return fmax(scale_of_force(plan, maximum_load), accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
     }
 }
 
 double nt_plan_force_scale(const nt_plan *plan, double maximum_load)
 {
     const int felt = plan->demand.quantity == NT_QUANTITY_FORCE;
-    if (nt_plan_contact_form(plan) == NT_FORM_EXACT) {
+    if (nt_plan_contact_form(plan) == NT_FORM_EXACT && plan->visits_contact) {
         const double own = nt_maugis_pull_off_force(&plan->maugis);
         return felt ? fmin(plan->scale, own) : own;
     }
-    if (felt)
-        return plan->scale;
-    return pull_of(plan) > 0.0 ? pull_of(plan) : SMALL_LOAD * maximum_load;
+    return felt ? plan->scale : scale_of_force(plan, maximum_load);
 }
 
 typedef nt_law_value contact_law(const nt_plan *plan, double indentation);

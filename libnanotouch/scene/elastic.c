@@ -13,17 +13,13 @@
 #include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
 
-#define BESIDE 0.409    /* 1.025/sqrt(2 pi) */
-#define SLOPE 3.0       /* the stiffness is off by so much more than the force, at most */
-#define UNDER 0.637     /* u E* sqrt(2 R l)/F, at most: 2/pi, of a pressure that is even over l */
-#define WIDER 0.3       /* u grows by so much e */
-#define HALF 0.55       /* of F, in deep contact */
-#define DEEPER_BY 1.1   /* ratio of indentations that are looked at */
-#define NEAREST 1e-13   /* [m] */
-#define FARTHEST 1e-2   /* [m] */
-#define DEEPER 1.05     /* than the largest load */
-#define INSIDE_FOLD 0.2 /* of the range of adhesion: nearer, the loss over that range tells more */
-#define MOST_OF_W 0.5   /* share of w that may be wrong */
+#define BESIDE 0.409  /* 1.025/sqrt(2 pi) */
+#define UNDER 0.637   /* u E* sqrt(2 R l)/F, at most: 2/pi, of a pressure that is even over l */
+#define WIDER 0.3     /* u grows by so much e */
+#define DEEPER_BY 1.1 /* ratio of indentations that are looked at */
+#define NEAREST 1e-13 /* [m] */
+#define FARTHEST 1e-2 /* [m] */
+#define DEEPER 1.05   /* than the largest load */
 
 static double number_of(const nt_plan *plan, const nt_elastic_sum *s)
 {
@@ -33,7 +29,7 @@ static double number_of(const nt_plan *plan, const nt_elastic_sum *s)
 }
 
 /* Where the surface is bluntest: F, k and the error in them grow with the radius, e as its root. */
-static double bluntest(const nt_plan *plan)
+double nt_elastic_bluntest(const nt_plan *plan)
 {
     return nt_plan_is_curved(plan) ? nt_plan_largest_ratio(plan) : 1.0;
 }
@@ -41,7 +37,7 @@ static double bluntest(const nt_plan *plan)
 /* What rigid bodies err by, over the sum of |F|, where e is largest; infinite beyond a jump. */
 static double share_of(const nt_plan *plan, const nt_elastic_sum *s)
 {
-    const double e = number_of(plan, s) * sqrt(bluntest(plan));
+    const double e = number_of(plan, s) * sqrt(nt_elastic_bluntest(plan));
     if (!s->pulls)
         return BESIDE * e;
     return e < NT_ELASTIC_JUMP ? BESIDE * e / sqrt(1.0 - e / NT_ELASTIC_JUMP) : (double)INFINITY;
@@ -50,11 +46,11 @@ static double share_of(const nt_plan *plan, const nt_elastic_sum *s)
 /* The same as a share of the demand. */
 double nt_elastic_error(const nt_plan *plan, const nt_elastic_sum *s)
 {
-    const double share = share_of(plan, s), scale = plan->scale, ratio = bluntest(plan);
+    const double share = share_of(plan, s), scale = plan->scale, ratio = nt_elastic_bluntest(plan);
     if (share == 0.0)
         return 0.0;
     if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
-        return SLOPE * share * ratio * s->all_k / fmax(ratio * fabs(s->k), scale);
+        return NT_ELASTIC_SLOPE * share * ratio * s->all_k / fmax(ratio * fabs(s->k), scale);
     return share * ratio * s->all_F / fmax(ratio * fabs(s->F), scale);
 }
 
@@ -82,7 +78,7 @@ static double under(const nt_plan *plan, nt_law_value most)
 
 /* The sum of that over the terms; with tails or without [m]. Under the apex, where contact takes hold, it grows with e,
  * up to e^2 l/8 of a pressure that is Hertz' own. */
-static double under_all(const nt_plan *plan, int tails)
+double nt_elastic_under(const nt_plan *plan, int tails)
 {
     double u = 0.0;
     nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
@@ -95,13 +91,13 @@ static double under_all(const nt_plan *plan, int tails)
         s.all_F += most.F;
         s.all_k += most.k;
     }
-    return u * sqrt(bluntest(plan)) * (1.0 + WIDER * number_of(plan, &s) * sqrt(bluntest(plan)));
+    return u * sqrt(nt_elastic_bluntest(plan)) * (1.0 + WIDER * number_of(plan, &s) * sqrt(nt_elastic_bluntest(plan)));
 }
 
 /* Without adhesion, as a share of the demand: sqrt(d) - sqrt(d - u) is largest where contact would begin. */
 static double radius_at(const nt_plan *plan, double u)
 {
-    const double blunter = sqrt(bluntest(plan));
+    const double blunter = sqrt(nt_elastic_bluntest(plan));
     return u > 0.0 ? nt_plan_contact_eval(plan, nt_plan_contact_form(plan), u).a * blunter / plan->scale : 0.0;
 }
 
@@ -113,32 +109,32 @@ static double radius_before_contact(const nt_plan *plan, double gap)
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (nt_term_rows[term]->pressure)
             u += under(plan, nt_elastic_sizes(plan, term, gap));
-    return radius_at(plan, u * sqrt(bluntest(plan)) - gap);
+    return radius_at(plan, u * sqrt(nt_elastic_bluntest(plan)) - gap);
 }
 
 /* They press the surface away by u: sqrt(d) - sqrt(d - u) is largest where contact would begin, for stiffness, too. */
 double nt_plan_press_error(const nt_plan *plan)
 {
-    const double u = under_all(plan, 1);
+    const double u = nt_elastic_under(plan, 1);
     if (plan->demand.quantity != NT_QUANTITY_STIFFNESS || !(u > 0.0) || plan->source != NT_ADHESION_NONE)
         return 0.0;
     const double k = nt_plan_contact_eval(plan, nt_plan_contact_form(plan), u).k;
-    return fmin(k, plan->maximum_stiffness) * sqrt(bluntest(plan)) / plan->scale;
+    return fmin(k, plan->maximum_stiffness) * sqrt(nt_elastic_bluntest(plan)) / plan->scale;
 }
 
 /* In contact without adhesion: a force that is less by k_c u, a radius that is that of an indentation less u. */
 static double error_in_contact(const nt_plan *plan)
 {
     const nt_elastic_sum touching = nt_elastic_sum_at(plan, 0.0);
-    const double u = under_all(plan, 1), ratio = bluntest(plan);
+    const double u = nt_elastic_under(plan, 1), ratio = nt_elastic_bluntest(plan);
     double worst = 0.0;
     if (plan->demand.quantity == NT_QUANTITY_RADIUS)
         return radius_at(plan, u);
     for (double d = NEAREST; d < plan->largest_indentation && u > 0.0; d *= DEEPER_BY) {
         const nt_law_value contact = nt_plan_contact_eval(plan, nt_plan_contact_form(plan), d);
-        const double lost = fmin(sqrt(ratio) * contact.k * u, HALF * ratio * touching.all_F);
+        const double lost = fmin(sqrt(ratio) * contact.k * u, NT_ELASTIC_HALF * ratio * touching.all_F);
         const double error = plan->demand.quantity == NT_QUANTITY_STIFFNESS
-                                 ? SLOPE * fmin(lost / d, contact.k) / fmax(contact.k, plan->scale)
+                                 ? NT_ELASTIC_SLOPE * fmin(lost / d, contact.k) / fmax(contact.k, plan->scale)
                                  : lost / fmax(fabs(contact.F + touching.F), plan->scale);
         worst = fmax(worst, error);
     }
@@ -156,7 +152,7 @@ static double where_force_is(const nt_plan *plan, double force, double nearer, d
 }
 
 /* By which share of w the tail pulls more than on a surface that keeps still. */
-static double more_of_w(const nt_plan *plan)
+double nt_elastic_more_of_w(const nt_plan *plan)
 {
     const double hold = plan->capture_gap * (1.0 + 1e-12);
     const nt_elastic_sum s = nt_elastic_sum_at(plan, hold);
@@ -169,43 +165,6 @@ static double more_of_w(const nt_plan *plan)
     return share_of(plan, &s) * tail / (2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion);
 }
 
-/* Laws around a contact that are no tail: where they are held, and their net force at a gap [N]. */
-static nt_elastic_sum others_at_hold(const nt_plan *plan)
-{
-    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
-        if (!nt_term_rows[term]->words.tail && nt_term_rows[term]->pressure) {
-            const double F = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), 0.0).F;
-            s.F += F;
-            s.all_F += fabs(F);
-        }
-    return s;
-}
-
-static double others_at(const nt_plan *plan, double gap)
-{
-    double F = 0.0;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
-        if (!nt_term_rows[term]->words.tail && nt_term_rows[term]->pressure)
-            F += nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap).F;
-    return F;
-}
-
-static double shift_of(const nt_plan *plan, int tails)
-{
-    const double more = tails ? more_of_w(plan) : 0.0;
-    if (more > MOST_OF_W)
-        return INFINITY;
-    return (under_all(plan, 0) + more * fabs(plan->release_gap)) * nt_plan_largest_unit(plan, NT_QUANTITY_FOLDS);
-}
-
-double nt_plan_rigid_shift(const nt_plan *plan)
-{
-    if (plan->source == NT_ADHESION_NONE || plan->deformation.holds)
-        return 0.0;
-    return shift_of(plan, plan->deformation.count == 0); /* of a table the tail is right */
-}
-
 double nt_plan_deform_touch(const nt_plan *plan)
 {
     const nt_deform_table *table = plan->relief.count > 0 ? plan->relief.table[0] : &plan->deformation;
@@ -216,106 +175,6 @@ double nt_plan_deform_touch(const nt_plan *plan)
         return 0.0;
     const double root = 0.5 * plan->deformation.jump_error / plan->bound.force_error;
     return root * root * plan->contact.radius / (plan->scale * plan->scale) + plan->deformation.jump_error;
-}
-
-/* Of an adhesive contact with another w, at an indentation; NaN beyond its fold. */
-static nt_law_value contact_with(const nt_plan *plan, double more, double indentation)
-{
-    nt_contact contact = plan->contact;
-    contact.work_of_adhesion *= 1.0 + more;
-    contact.cohesive_stress *= 1.0 + more;
-    nt_maugis maugis;
-    nt_law_value value = {NAN, NAN, NAN, NAN};
-    if (nt_maugis_init(&maugis, &contact) == NT_OK)
-        (void)nt_maugis_eval(&maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
-    return value;
-}
-
-/* The force of the contact with w less by what some force at hold takes of it, and without [N]; NaN: nothing holds. */
-static double force_taken(const nt_plan *plan, double taken, double indentation, double alone)
-{
-    const double full = 2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion;
-    return contact_with(plan, -taken / full, indentation).F - alone;
-}
-
-/* A contact that is pulled out has a neck, and beside it the gap is far less than that of undeformed bodies: laws of
- * short range act there in full, as a part of w. By how much the force is off then, at most [N]. Laws that take all of
- * w reach far: only what they grow by from the undeformed gap to the neck's is not in the sum already. */
-static double error_of_neck(const nt_plan *plan)
-{
-    enum { SAMPLES = 48 };
-    const nt_elastic_sum held = others_at_hold(plan);
-    const double beside = shift_of(plan, 0) + nt_plan_away_from_folds(plan), fold = beside - plan->release_gap;
-    double worst = 0.0;
-    if (held.all_F == 0.0 || nt_plan_contact_form(plan) != NT_FORM_EXACT)
-        return 0.0;
-    for (int i = 0; i <= SAMPLES && fold < 0.0; ++i) {
-        const double t = (double)i / SAMPLES, d = fold * (1.0 - t * t * t);
-        const nt_law_value alone = contact_with(plan, 0.0, d);
-        if (!(alone.a > 0.0))
-            continue;
-        const double others = others_at(plan, -d);
-        double off = force_taken(plan, held.F, d, alone.F) - others;
-        if (isnan(off))
-            off = force_taken(plan, held.F - others, d, alone.F);
-        worst = fmax(worst, isnan(off) ? (double)INFINITY : fabs(off));
-    }
-    return NT_SAMPLED * worst;
-}
-
-/* One of 2 DEPTHS + 1 indentations, from so far inside the fold to the largest load: they crowd there and `beside`
- * first touch, since stiffness and radius go as roots there. */
-enum { DEPTHS = 48 };
-static double depth_at(const nt_plan *plan, double inside, double beside, int i)
-{
-    const double fold = inside - plan->release_gap;
-    const double touch = fmax(plan->maugis.folds.touch_indentation * plan->maugis.indentation_scale + beside, fold);
-    const double t = fabs((double)i / DEPTHS - 1.0), deepest = fmax(plan->largest_indentation, touch), s = 1.0 - t;
-    const double before = fmax(touch - 2.0 * beside, fold);
-    return i < DEPTHS ? fold + s * s * s * (before - fold) : touch + t * t * t * (deepest - touch);
-}
-
-/* What the pressure around an adhesive contact and a w that is not quite right do to it, from where the bound begins:
- * beside fold and first touch. Of stiffness the former nearer to the fold is told by what is lost over that range; of
- * force the latter is what the tail pulls more. */
-static double error_of_contact(const nt_plan *plan, int tails)
-{
-    const nt_quantity quantity = plan->demand.quantity;
-    const int is_force = quantity == NT_QUANTITY_FORCE, is_radius = quantity == NT_QUANTITY_RADIUS;
-    const double u = under_all(plan, 0), more = tails && !is_force ? more_of_w(plan) : 0.0;
-    const double moved = shift_of(plan, tails), beside = NT_ELASTIC_BESIDE * moved + nt_plan_away_from_folds(plan);
-    const double inside = quantity == NT_QUANTITY_STIFFNESS ? INSIDE_FOLD * plan->length : 0.0;
-    double worst = 0.0;
-    if (u == 0.0 && more == 0.0)
-        return 0.0;
-    if (nt_plan_contact_form(plan) != NT_FORM_EXACT || isinf(moved))
-        return is_radius || (isinf(moved) && !is_force) ? (double)INFINITY : 0.0;
-    for (int i = 0; i <= 2 * DEPTHS; ++i) {
-        const double d = depth_at(plan, beside, beside, i), at = d + plan->release_gap < inside ? 0.0 : u;
-        const nt_law_value contact = contact_with(plan, 0.0, d);
-        const double value = nt_plan_pick(contact, quantity);
-        if (is_force && contact.k > 0.0) /* it gives way, and the force is not more than half lost */
-            continue;
-        const double wider = nt_plan_pick(contact_with(plan, more, d + at), quantity) - value;
-        const double narrower = value - nt_plan_pick(contact_with(plan, -more, d - at), quantity);
-        worst = fmax(worst, fmax(fabs(wider), fabs(narrower)) / fmax(fabs(value), plan->scale));
-    }
-    return NT_SAMPLED * worst * (is_radius ? nt_plan_largest_unit(plan, quantity) : bluntest(plan));
-}
-
-double nt_plan_around_error(const nt_plan *plan, int tails)
-{
-    const nt_quantity quantity = plan->demand.quantity;
-    if (quantity == NT_QUANTITY_FOLDS)
-        return shift_of(plan, tails) / plan->scale;
-    const double moved = error_of_contact(plan, tails);
-    if (quantity == NT_QUANTITY_RADIUS)
-        return moved;
-    const double pressed = fmin(plan->maximum_stiffness * under_all(plan, 0), HALF * others_at_hold(plan).all_F);
-    const double lost = fmax(pressed, error_of_neck(plan)) * bluntest(plan);
-    if (quantity == NT_QUANTITY_STIFFNESS)
-        return fmax(SLOPE * lost / plan->length / plan->scale, moved);
-    return fmax(lost / plan->scale, moved);
 }
 
 /* Beside contact there is no radius and, but for a jump, no fold. */
@@ -353,6 +212,9 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
         worst = fmax(worst, error_in_contact(plan));
     if (touches < 0 && is_radius)
         worst = fmax(worst, radius_before_contact(plan, reached));
-    plan->around_error = plan->source != NT_ADHESION_NONE && nearest <= 0.0 ? nt_plan_around_error(plan, 1) : 0.0;
+    const int adheres = plan->source != NT_ADHESION_NONE && plan->visits_contact;
+    plan->around_error = adheres ? nt_plan_around_error(plan, 1) : 0.0;
+    if (adheres && plan->demand.quantity == NT_QUANTITY_FORCE && isfinite(worst))
+        worst = fmax(worst, plan->around_error + nt_plan_tail_error(plan));
     return worst;
 }

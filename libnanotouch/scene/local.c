@@ -22,6 +22,16 @@ double nt_plan_largest_ratio(const nt_plan *plan)
     return plan->radii ? fmax(1.0, plan->radii->maximum / plan->contact.radius) : 1.0;
 }
 
+double nt_plan_contact_reach(const nt_plan *plan)
+{
+    double reach = fmax(plan->capture_gap, plan->release_gap);
+    for (int corner = NT_CORNER_BLUNT; corner < NT_CORNERS && nt_plan_varies(plan); corner += 2) {
+        const nt_contact contact = nt_plan_contact_of_corner(plan, corner);
+        reach = fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, &contact));
+    }
+    return reach;
+}
+
 double nt_plan_curvature_shift(const nt_plan *plan)
 {
     if (!plan->radii || nt_plan_contact_form(plan) != NT_FORM_EXACT)

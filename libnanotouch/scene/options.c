@@ -154,6 +154,7 @@ void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *o
     const double nearest = fmax(scene->range.minimum_gap, 0.0);
     double beside = 0.0;
     *options = none;
+    nt_plan_visit(plan, scene);
     plan->scale = nt_plan_scale_of(plan, scene->range.maximum_load);
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         if (!nt_term_rows[term]->offer) {

@@ -8,6 +8,13 @@
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 
+/* adhesion.c: z0 that is computed with [m]. Van der Waals of flats at z0 is no more than w, of which it is a part:
+ * where the scene's values say otherwise, atoms are kept apart so far that it is w, D0 = sqrt(H/(12 pi w))
+ * (Israelachvili, Intermolecular and Surface Forces, 3rd ed., Sec. 13.13). */
+double nt_plan_atomic_distance(const nt_scene *scene);
+/* NT_E_RANGE where that is farther than atoms in contact are. */
+nt_status nt_plan_check_distance(const nt_scene *scene, nt_problem *problem);
+
 /* contact.c: source, shape, contact with all of w, capture; and, with what the tail leaves of w, the laws of contact.
  */
 void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adhesion);
@@ -66,7 +73,7 @@ double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, const nt_con
 double nt_plan_effective_modulus(const nt_plan *plan, double youngs_modulus);
 /* The contact of a scene at the corner plan->corner of what its surface is made of. */
 void nt_plan_take_properties(nt_plan *plan, const nt_scene *scene);
-/* The scene with the modulus and adhesion of that corner 0 in place of its own. */
+/* The scene as it is computed: with the modulus and adhesion of that corner 0, and the z0 of w. */
 nt_scene nt_plan_scene_over(const nt_scene *scene, const nt_properties *properties);
 /* Facts at all corners: the worst of them, with the contact of corner 0. */
 nt_status nt_plan_over_surface(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
@@ -130,7 +137,11 @@ double nt_plan_known_pull(const nt_plan *plan, double pull);
 nt_status nt_plan_laws_at(nt_plan *plan, const nt_scene *scene, double work_of_adhesion, nt_problem *problem);
 nt_status nt_plan_adhere(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 
-/* distance.c: the quantity of a demand. */
+/* distance.c: what of the range is visited, from which alone the scale S follows. */
+void nt_plan_visit(nt_plan *plan, const nt_scene *scene);
+/* The largest gap at which there can be contact, at every place of the surface [m]. */
+double nt_plan_contact_reach(const nt_plan *plan);
+/* The quantity of a demand. */
 double nt_plan_pick(nt_law_value value, nt_quantity quantity);
 /* What forces are measured by, whatever is demanded; of adhesive contact no more than its own pull-off force [N]. */
 double nt_plan_force_scale(const nt_plan *plan, double maximum_load);
@@ -192,6 +203,12 @@ static inline int nt_plan_solves_layer(const nt_plan *plan)
 
 /* Of what acts around an adhesive contact; of folds and radius, with `tails`, also of what the tail pulls more. */
 double nt_plan_around_error(const nt_plan *plan, int tails);
+/* elastic_contact.c: what the force of such a contact errs by, because its tail on the undeformed gap takes too little
+ * of w. */
+double nt_plan_tail_error(const nt_plan *plan);
+/* What a deforming plan adds to its bound, `error`, because its tail's share of w is no better; deformation.doubt,
+ * deformation.beside. */
+double nt_plan_doubt_share(nt_plan *plan, double error);
 /* How far the folds of an adhesive contact are from where they would be on a sample that deforms [m]. */
 double nt_plan_rigid_shift(const nt_plan *plan);
 /* deformation/deform.c: the tables of a sample that came to no end, so that no other demand tries them again. */
@@ -257,6 +274,8 @@ void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene);
 
 /* warnings.c: what the bound does not cover. */
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene);
+/* Of a z0 that is not the one given. */
+void nt_plan_warn_distance(nt_plan *plan, const nt_scene *given, const nt_scene *computed);
 void nt_plan_add_warning(nt_plan *plan, nt_plan_warning warning);
 /* flank.c: how far laws of a sphere are from those of a cone, a punch, a truncated tip. */
 void nt_plan_warn_flank(nt_plan *plan);

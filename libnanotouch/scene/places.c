@@ -28,6 +28,7 @@ nt_scene nt_plan_scene_over(const nt_scene *scene, const nt_properties *properti
         over.adhesion.given = NT_ADHESION_GIVEN_WORK;
         over.adhesion.work_of_adhesion = properties->work_of_adhesion.height_minimum;
     }
+    over.adhesion.equilibrium_distance = nt_plan_atomic_distance(&over);
     return over;
 }
 

@@ -56,6 +56,8 @@ static void finish(nt_plan *plan, double maximum_load)
     plan->bound.fold_shift += nt_plan_rigid_shift(plan);
     plan->fold_distance = nt_plan_away_from_folds(plan) + plan->bound.fold_shift + nt_plan_deform_touch(plan);
     plan->fold_distance += (NT_ELASTIC_BESIDE - 1.0) * nt_plan_rigid_shift(plan);
+    if (plan->deformation.count > 0 && plan->source != NT_ADHESION_NONE)
+        plan->fold_distance = fmax(plan->fold_distance, plan->deformation.beside);
     if (plan->deformation.count > 0 && plan->deformation.jumps &&
         plan->demand.quantity == NT_QUANTITY_STIFFNESS) /* k ~ 1/sqrt */
         plan->fold_distance += plan->deformation.jump_error / plan->bound.force_error;
@@ -96,7 +98,9 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
     plan->ratio = 1.0;
     plan->probe_noise = inputs->probe ? nt_probe_force_noise(inputs->probe) : 0.0;
     const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
-    status = nt_plan_tabulate(plan, &scene, problem);
+    status = nt_plan_check_distance(&scene, problem);
+    if (status == NT_OK)
+        status = nt_plan_tabulate(plan, &scene, problem);
     if (status == NT_OK)
         status = nt_plan_adhere(plan, &scene, problem);
     return status == NT_OK ? check_shape(plan, &scene, problem) : status;
@@ -250,6 +254,7 @@ nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem
         return status;
     finish(plan, scene.range.maximum_load);
     nt_plan_warn(plan, &scene);
+    nt_plan_warn_distance(plan, inputs->scene, &scene);
     return NT_OK;
 }
 

@@ -123,6 +123,18 @@ static void check_folds(nt_plan *plan)
                                               "m", plan->fold_distance, gap});
 }
 
+#define ATOMS_MOVED (1.0 + 1e-6) /* scenes that give H by w and z0 round them */
+
+void nt_plan_warn_distance(nt_plan *plan, const nt_scene *given, const nt_scene *computed)
+{
+    const double z0 = given->adhesion.equilibrium_distance, taken = computed->adhesion.equilibrium_distance;
+    if (taken > z0 * ATOMS_MOVED)
+        nt_plan_add_warning(plan,
+                            (nt_plan_warning){"van der Waals alone exceeds the work of adhesion at the interatomic "
+                                              "distance, so that a larger one is taken, at which it is all of it",
+                                              "m", taken, z0});
+}
+
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
 {
     plan->warning_count = 0;

@@ -115,10 +115,18 @@ static int make_both(const nt_scene *scene, double accuracy)
     return made && plan.deformation.count == 0 && whole.deformation.count == 0;
 }
 
+/* z0, or the distance from which van der Waals alone is all of w. */
+static double atoms_apart(const nt_scene *scene)
+{
+    const nt_adhesion *adhesion = &scene->adhesion;
+    const double all = sqrt(adhesion->hamaker_constant / (12.0 * NT_PI * adhesion->work_of_adhesion));
+    return plan.source == NT_ADHESION_SOLID ? fmax(adhesion->equilibrium_distance, all)
+                                            : adhesion->equilibrium_distance;
+}
+
 static void compare_pull(const nt_scene *scene)
 {
-    expect(plan.pull_off_force,
-           largest_of_all(0, scene->adhesion.equilibrium_distance, scene->custom[NT_CUSTOM_TERMS - 1].context));
+    expect(plan.pull_off_force, largest_of_all(0, atoms_apart(scene), scene->custom[NT_CUSTOM_TERMS - 1].context));
 }
 
 static void compare_growth(const nt_scene *scene, double accuracy)
@@ -126,8 +134,7 @@ static void compare_growth(const nt_scene *scene, double accuracy)
     const double capture = plan.capture_gap, jump = everything(1, capture).F - everything(0, capture * (1.0 + 1e-12)).F;
     assert_int_equal(isinf(plan.minimum_spring), fabs(jump) > accuracy * plan.pull_off_force);
     if (isfinite(plan.minimum_spring))
-        expect(plan.minimum_spring,
-               largest_of_all(1, scene->adhesion.equilibrium_distance, scene->custom[NT_CUSTOM_TERMS - 1].context));
+        expect(plan.minimum_spring, largest_of_all(1, atoms_apart(scene), scene->custom[NT_CUSTOM_TERMS - 1].context));
 }
 
 static int compared;

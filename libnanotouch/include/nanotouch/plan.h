@@ -57,7 +57,7 @@ typedef struct nt_plan_warning {
     const char *unit;    /* of the two numbers */
     double value, limit; /* limit: NaN where it is not a matter of size [unit] */
 } nt_plan_warning;
-enum { NT_PLAN_WARNINGS_MAX = 29 };
+enum { NT_PLAN_WARNINGS_MAX = 30 };
 
 /* Models that the plan did not take: largest |dF|/max(|F|, S) at equal indentation, from 0.9 of that
  * of the pull-off (Hertz and DMT: from first touch) to the largest load. */
@@ -93,6 +93,8 @@ typedef struct nt_deform_table {
     double release;    /* ... that lets go at this h [m] */
     double ratio;      /* of the effective radius it is of to the tip's own [-] */
     int layered;       /* 1: of a layer bonded to rigid ground */
+    double doubt;      /* of w that may be wrong, because the tail's share of it is no better [-] */
+    double beside;     /* from this far from folds and first touch on that is in the bound [m] */
     double share;      /* of w, what the tail pulls in contact that the surface does not jump into [J/m^2] */
     nt_deform_node node[NT_DEFORM_TABLE];
 } nt_deform_table;
@@ -160,11 +162,15 @@ typedef struct nt_plan {
     double contact_pull;           /* the strongest pull in contact, everything on, positive [N] */
     double pull_off_force;         /* and wherever it is: what a load must overcome to come free, positive [N] */
     double largest_pull_off_force; /* the same over all places of the surface [N] */
-    double minimum_spring;         /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
-    double maximum_stiffness;      /* k of the contact at the largest load [N/m] */
-    double largest_indentation;    /* at that load [m] */
-    double length;                 /* the shortest distance over which the force changes its shape [m] */
-    nt_contact_validity validity;  /* of the contact law at the largest load */
+    int visits_contact;         /* 0: no gap of the scene's range comes to contact. Then, at those gaps on rigid ... */
+    double visited_pull;        /* ... bodies: the strongest pull, */
+    double visited_push;        /* ... push, [N] */
+    double visited_stiffness;   /* ... and |k| [N/m]; 0 where there is contact */
+    double minimum_spring;      /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
+    double maximum_stiffness;   /* k of the contact at the largest load [N/m] */
+    double largest_indentation; /* at that load [m] */
+    double length;              /* the shortest distance over which the force changes its shape [m] */
+    nt_contact_validity validity; /* of the contact law at the largest load */
 
     const nt_surface *surface;       /* dilated surface, borrowed; NULL: flat at z = 0 */
     const nt_radius_map *radii;      /* borrowed; NULL: the tip's own radius everywhere */

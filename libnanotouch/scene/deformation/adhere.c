@@ -157,6 +157,7 @@ nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double err
     if (status != NT_OK || plan->source == NT_ADHESION_NONE)
         return NT_E_RANGE;
     nt_plan_options_of(plan, scene, &options);
+    error += nt_plan_doubt_share(plan, error);
     drop_others(plan, &options, error);
     if (plan->deformation.holds)
         take_contact(plan, &options, error);

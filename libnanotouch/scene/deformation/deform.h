@@ -270,5 +270,14 @@ double nt_elastic_nearer(const nt_plan *plan, double gap);
 double nt_elastic_hold(const nt_plan *plan);
 /* elastic.c: what rigid bodies err by there, as a share of the demand. */
 double nt_elastic_error(const nt_plan *plan, const nt_elastic_sum *s);
+/* By how much the pressure around a contact moves the surface there, at most; with tails or without [m]. */
+double nt_elastic_under(const nt_plan *plan, int tails);
+/* By which share of w the tail pulls more than on a surface that keeps still; the largest effective radius over the
+ * tip's own, where the surface is curved. */
+double nt_elastic_more_of_w(const nt_plan *plan);
+double nt_elastic_bluntest(const nt_plan *plan);
+
+#define NT_ELASTIC_SLOPE 3.0 /* the stiffness is off by so much more than the force, at most */
+#define NT_ELASTIC_HALF 0.55 /* of F: what is lost in deep contact, at most */
 
 #endif

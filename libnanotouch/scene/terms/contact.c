@@ -181,22 +181,11 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
     offer_local(plan, options, more);
 }
 
-/* The largest gap at which there can be contact. */
-static double reach_of(const nt_plan *plan)
-{
-    double reach = fmax(plan->capture_gap, plan->release_gap);
-    for (int corner = NT_CORNER_BLUNT; corner < NT_CORNERS && nt_plan_varies(plan); corner += 2) {
-        const nt_contact contact = nt_plan_contact_of_corner(plan, corner);
-        reach = fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, &contact));
-    }
-    return reach;
-}
-
 /* The largest attraction of all beside contact, at the gaps where there can be contact; all is held inside 0. */
 static double opposing(const nt_plan *plan)
 {
     double pull = fmax(-nt_plan_beside_at(plan, 0.0).F, 0.0);
-    for (double gap = reach_of(plan); gap > 1e-13; gap *= 0.9)
+    for (double gap = nt_plan_contact_reach(plan); gap > 1e-13; gap *= 0.9)
         pull = fmax(pull, -NT_SAMPLED * nt_plan_beside_at(plan, gap).F);
     return pull * nt_plan_largest_ratio(plan);
 }
@@ -215,7 +204,7 @@ static double more_stiffness_at(const nt_plan *plan, double gap)
 /* The largest of it at the gaps where there can be contact; terms that are held have no stiffness. */
 static double more_stiffness(const nt_plan *plan)
 {
-    const double reach = reach_of(plan);
+    const double reach = nt_plan_contact_reach(plan);
     double more = 1.0;
     for (double gap = reach; gap > 1e-13; gap *= 0.95)
         more = fmax(more, more_stiffness_at(plan, gap));
@@ -279,7 +268,7 @@ static void offer_all(nt_plan *plan, const nt_scene *scene, nt_plan_options *opt
     const nt_form full = nt_plan_contact_form(plan);
     if (full == NT_FORM_EXACT)
         nt_plan_rivals_of(plan);
-    if (scene->range.minimum_gap > fmax(reach_of(plan), 0.0)) {
+    if (!plan->visits_contact) {
         offer_none(plan, options, beside);
         return;
     }

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Two plans of one scene, one of a rigid sample and a finer one that deforms, beside the fold of the contact: there
+ * force and radius go as roots of the distance, so that a w that is a little wrong tells most. They differ by no more
+ * than both bounds from the larger of their distances on. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "nanotouch/interaction.h"
+#include "nanotouch/plan.h"
+
+static nt_plan plans[2];
+
+static nt_scene dry(double radius, double modulus, double work, double hamaker)
+{
+    nt_scene scene = nt_scene_defaults();
+    scene.tip.radius = radius;
+    scene.sample.youngs_modulus = modulus;
+    scene.sample.poisson_ratio = 0.3;
+    scene.medium.relative_humidity = scene.medium.film_thickness = 0.0;
+    scene.adhesion.work_of_adhesion = work;
+    scene.adhesion.hamaker_constant = hamaker;
+    scene.range.maximum_load = 2e-8;
+    return scene;
+}
+
+static void make(nt_plan *plan, const nt_scene *scene, nt_quantity quantity, double accuracy)
+{
+    const nt_demand demand = {.relative_accuracy = accuracy, .quantity = quantity};
+    const nt_plan_inputs inputs = {.scene = scene, .demand = &demand};
+    nt_problem problem = {0};
+    if (nt_plan_make(plan, &inputs, &problem) != NT_OK)
+        fail_msg("%s = %g", problem.field, problem.value);
+}
+
+static double value_at(const nt_plan *plan, double gap)
+{
+    const nt_interaction_state held = {.attached = 1};
+    const nt_law_value value = nt_interaction_eval_gap(plan, &held, NULL, gap);
+    return plan->demand.quantity == NT_QUANTITY_RADIUS ? value.a : value.F;
+}
+
+/* Whether first touch is so near that a radius has no bound. */
+static int touches_beside(double gap, double away)
+{
+    if (plans[0].demand.quantity != NT_QUANTITY_RADIUS)
+        return 0;
+    return (value_at(&plans[0], gap - away) > 0.0) != (value_at(&plans[0], gap + away) > 0.0) ||
+           (value_at(&plans[1], gap - away) > 0.0) != (value_at(&plans[1], gap + away) > 0.0);
+}
+
+/* The largest difference over both bounds, from the fold inwards. */
+static double contradiction(const nt_scene *scene, nt_quantity quantity, const double demands[2])
+{
+    for (int i = 0; i < 2; ++i)
+        make(&plans[i], scene, quantity, demands[i]);
+    const double away = fmax(plans[0].fold_distance, plans[1].fold_distance);
+    const double fold = fmin(plans[0].release_gap, plans[1].release_gap);
+    double worst = 0.0;
+    for (double q = 1.0001; fold - q * away > -plans[0].largest_indentation; q *= 1.05) {
+        const double gap = fold - q * away;
+        if (touches_beside(gap, away))
+            continue;
+        const double one = value_at(&plans[0], gap), other = value_at(&plans[1], gap);
+        const double size = fmax(fabs(one), fabs(other));
+        const double allowed = plans[0].bound.force_error * fmax(size, plans[0].scale) +
+                               plans[1].bound.force_error * fmax(size, plans[1].scale);
+        worst = fmax(worst, fabs(one - other) / allowed);
+    }
+    return worst;
+}
+
+static void forces_agree_beside_the_fold(void **state)
+{
+    (void)state;
+    const nt_scene scenes[] = {dry(3.35e-9, 4.65e9, 0.199, 1.62e-20), dry(17.76e-9, 6.516e9, 0.1203, 3e-20),
+                               dry(2e-8, 5e10, 0.1, 5e-20), dry(8e-8, 1.2e11, 0.03, 2e-20)};
+    const double demands[][2] = {{6e-4, 2e-5}, {6e-4, 0.0}, {1e-2, 1e-4}, {0.1, 1e-3}};
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            assert_true(contradiction(&scenes[i], NT_QUANTITY_FORCE, demands[j]) <= 1.0);
+}
+
+static void radii_agree_where_contact_ends(void **state)
+{
+    (void)state;
+    const nt_scene scene = dry(5.8e-9, 6.5e9, 0.157, 3e-20);
+    const double demands[][2] = {{1e-3, 4e-6}, {1e-2, 1e-4}};
+    for (int j = 0; j < 2; ++j)
+        assert_true(contradiction(&scene, NT_QUANTITY_RADIUS, demands[j]) <= 1.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(forces_agree_beside_the_fold),
+                                       cmocka_unit_test(radii_agree_where_contact_ends)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
