@@ -115,13 +115,14 @@ static int make_both(const nt_scene *scene, double accuracy)
     return made && plan.deformation.count == 0 && whole.deformation.count == 0;
 }
 
-/* z0, or the distance from which van der Waals alone is all of w. */
+/* z0, or the distance at which van der Waals alone is all of w; of a cone and a punch it is no part of w. */
 static double atoms_apart(const nt_scene *scene)
 {
     const nt_adhesion *adhesion = &scene->adhesion;
     const double all = sqrt(adhesion->hamaker_constant / (12.0 * NT_PI * adhesion->work_of_adhesion));
-    return plan.source == NT_ADHESION_SOLID ? fmax(adhesion->equilibrium_distance, all)
-                                            : adhesion->equilibrium_distance;
+    const int round = scene->tip.shape != NT_SHAPE_CONE && scene->tip.shape != NT_SHAPE_PUNCH;
+    return plan.source == NT_ADHESION_SOLID && round ? fmax(adhesion->equilibrium_distance, all)
+                                                     : adhesion->equilibrium_distance;
 }
 
 static void compare_pull(const nt_scene *scene)

@@ -36,11 +36,32 @@ class Adhesion(NamedTuple):
     capture: float
 
 
+def _with_atoms_apart(scene: Any) -> Any:
+    """The scene with the contact distance D0 of Israelachvili, w = H/(12 pi D0^2), where that is more than its z0: van
+    der Waals is a part of w. Of a measured pull-off force F, w is no less than F/(2 pi R). Up to a nanometre."""
+    medium, adhesion, H = scene.medium, scene.adhesion, scene.adhesion.hamaker_constant
+    wet = medium.kind == "air" and medium.relative_humidity > 0.0 and medium.surface_tension > 0.0
+    if wet or scene.tip.shape in ("cone", "punch"):
+        return scene
+    work = {
+        "pull_off_force": adhesion.pull_off_force / (2.0 * math.pi * scene.tip.radius),
+        "surface_energies": 2.0 * math.sqrt(adhesion.tip_surface_energy * adhesion.sample_surface_energy),
+        "work_of_adhesion": adhesion.work_of_adhesion,
+    }[adhesion.given]
+    if work == 0.0:
+        return scene
+    apart = math.sqrt(H / (12.0 * math.pi * work)) - scene.sample.roughness / 2.0
+    made = scene.copy()
+    if adhesion.equilibrium_distance < apart <= 1e-9:
+        made.adhesion.equilibrium_distance = apart
+    return made
+
+
 class Oracle:
     """One scene; ``work`` [J/m2] where a pull-off force is given, which w is to be found for."""
 
     def __init__(self, scene: Any, work: float = 0.0) -> None:
-        self.scene = scene
+        self.scene = _with_atoms_apart(scene)
         one, other = ((1.0 - body.poisson_ratio**2) / body.youngs_modulus for body in (scene.tip, scene.sample))
         self.modulus = 1.0 / (one + other)
         self.is_jkr = scene.tip.shape in ("cone", "punch")

@@ -159,7 +159,7 @@ def compare_over(
     except Error as refusal:
         return refusal
     worst, hold = 0.0, True
-    own = oracle_of(scene, plan) if body.work_of_adhesion is None else Oracle(scene)
+    own = oracle_of(scene, plan) if body.work_of_adhesion is None else Oracle(_least_sticky(scene, body))
     for _ in range(5):
         x, y = rng.uniform(0.1 * body.size[0], 0.8 * body.size[0], 2)
         place = Place(x, y, float(body.height(x, y)), float(body.radius_map.radius(x, y).radius))
@@ -168,6 +168,13 @@ def compare_over(
         outcome = _compare_at(place, plan, truth, gaps_of(plan, scene, 12, truth.roots(place.radius)))
         worst, hold = float(np.maximum(worst, outcome.error)), hold and outcome.folds_hold
     return Outcome(plan, worst, hold)
+
+
+def _least_sticky(scene: Scene, body: Surface) -> Scene:
+    """With the least w of a surface, which says how far apart its atoms are."""
+    made = scene.copy()
+    made.adhesion.given, made.adhesion.work_of_adhesion = "work_of_adhesion", float(np.min(body.work_of_adhesion))
+    return made
 
 
 def mean_at(pixels: Floats | None, body: Surface, x: float, y: float) -> float | None:

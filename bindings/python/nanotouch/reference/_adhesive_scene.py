@@ -24,7 +24,17 @@ from nanotouch import forces as laws
 from nanotouch._arrays import Floats, as_floats
 from nanotouch.reference._deformation import Deformation, Deformed
 from nanotouch.reference._pressures import Pressure
-from nanotouch.reference._scene import History, _capture_gap, _contact, _has_meniscus, _less, _potential, _touch, _work
+from nanotouch.reference._scene import (
+    History,
+    _atomic_distance,
+    _capture_gap,
+    _contact,
+    _has_meniscus,
+    _less,
+    _potential,
+    _touch,
+    _work,
+)
 from nanotouch.reference._soft_scene import _laws, _modulus
 from nanotouch.reference._surrounded import Surrounded
 from nanotouch.scene import Scene
@@ -80,7 +90,7 @@ def deformed_scene(scene: Scene, tolerance: float = 1e-6) -> DeformedScene:
     """Finds where the surface jumps, from far away inwards."""
     whole = _contact(scene, _work(scene))
     range_of_adhesion = _capture_gap(scene, whole)
-    shift = scene.adhesion.equilibrium_distance + 0.5 * scene.sample.roughness
+    shift = _atomic_distance(scene) + 0.5 * scene.sample.roughness
     modulus, _ = _modulus(scene)
     law = _pressure(scene, shift)
 
@@ -104,7 +114,7 @@ def _surrounded_scene(
     """Contact and the laws around it, as one."""
     assert whole.cohesive_stress is not None
     end_gap, per_area = whole.work_of_adhesion / whole.cohesive_stress, 2.0 * np.pi * scene.tip.radius
-    further, beside = scene.adhesion.equilibrium_distance - end_gap, _beside(scene)
+    further, beside = _atomic_distance(scene) - end_gap, _beside(scene)
 
     def pressure(g: Floats) -> Floats:
         return np.asarray(sum(law(np.maximum(g, end_gap) + further).k for law in beside) / per_area)
@@ -184,5 +194,5 @@ def _beside(scene: Scene) -> list[Any]:
 
 def _others(scene: Scene, gaps: Floats) -> Floats:
     """What acts in contact beside adhesion, on the undeformed gap."""
-    held = np.maximum(gaps, scene.adhesion.equilibrium_distance)
+    held = np.maximum(gaps, _atomic_distance(scene))
     return np.asarray(sum((law(held).F for law in _beside(scene)), np.zeros(gaps.shape)))

@@ -79,6 +79,24 @@ def _meniscus_radius(scene: Scene) -> float:
     )
 
 
+def _least_work(scene: Scene) -> float:
+    """w of the solids; of a measured pull-off force, that of rigid bodies [J/m2]."""
+    adhesion = scene.adhesion
+    if adhesion.given == "pull_off_force":
+        return float(adhesion.pull_off_force / (2.0 * np.pi * scene.tip.radius))
+    return _work(scene)
+
+
+def _atomic_distance(scene: Scene) -> float:
+    """z0, or the distance, up to a nanometre, at which van der Waals alone would be all of w, of which it is a part."""
+    given, hamaker = float(scene.adhesion.equilibrium_distance), scene.adhesion.hamaker_constant
+    if _has_meniscus(scene) or scene.tip.shape in ("cone", "punch") or hamaker == 0.0:
+        return given
+    work = _least_work(scene)
+    all_of_it = np.sqrt(hamaker / (12.0 * np.pi * work)) - 0.5 * scene.sample.roughness if work > 0.0 else np.inf
+    return float(all_of_it) if given < all_of_it <= 1e-9 else given
+
+
 def _contact(scene: Scene, work: float) -> contacts.Contact:
     """R, E*, all of w, and its stress."""
     modulus = contacts.effective_modulus(
@@ -88,7 +106,7 @@ def _contact(scene: Scene, work: float) -> contacts.Contact:
         return contacts.Contact(scene.tip.radius, modulus)
     if _has_meniscus(scene):  # the stress is the Laplace pressure over 2 r1 (E12)
         return contacts.Contact(scene.tip.radius, modulus, work, work / (2.0 * _meniscus_radius(scene)))
-    stress = contacts.cohesive_stress_atomic(work, scene.adhesion.equilibrium_distance)
+    stress = contacts.cohesive_stress_atomic(work, _atomic_distance(scene))
     return contacts.Contact(scene.tip.radius, modulus, work, stress)
 
 
@@ -202,7 +220,7 @@ def _vdw(scene: Scene, gaps: ArrayLike, hold: float) -> Any:
     common: dict[str, Any] = {
         "radius": tip.radius,
         "hamaker_constant": adhesion.hamaker_constant,
-        "roughness": scene.sample.roughness + 2.0 * adhesion.equilibrium_distance,
+        "roughness": scene.sample.roughness + 2.0 * _atomic_distance(scene),
         "minimum_gap": hold,
     }
     if tip.height > 0.0:
@@ -225,7 +243,7 @@ def _electrostatic(scene: Scene, gaps: Floats) -> Any:
     if potential == 0.0:
         return np.zeros(gaps.shape)
     common: dict[str, Any] = {
-        "radius": tip.radius, "potential": potential, "minimum_gap": scene.adhesion.equilibrium_distance,
+        "radius": tip.radius, "potential": potential, "minimum_gap": _atomic_distance(scene),
     }  # fmt: skip
     if tip.height > 0.0:
         return laws.electrostatic_tip(gaps, half_angle=tip.half_angle, height=tip.height, **common).F
@@ -239,7 +257,7 @@ def _charge(scene: Scene, gaps: Floats) -> Any:
         gaps,
         radius=scene.tip.radius,
         charge=scene.sample.charge,
-        minimum_gap=scene.adhesion.equilibrium_distance,
+        minimum_gap=_atomic_distance(scene),
     ).F
 
 
@@ -264,7 +282,7 @@ def _double_layer(scene: Scene, gaps: Floats) -> Any:
         tip_potential=potential(scene.tip),
         sample_potential=potential(scene.sample),
         relative_permittivity=medium.relative_permittivity,
-        minimum_gap=scene.adhesion.equilibrium_distance,
+        minimum_gap=_atomic_distance(scene),
     ).F
 
 
@@ -277,12 +295,12 @@ def _hydration(scene: Scene, gaps: Floats) -> Any:
         radius=scene.tip.radius,
         amplitude=medium.hydration_energy,
         decay_length=medium.hydration_length,
-        minimum_gap=scene.adhesion.equilibrium_distance,
+        minimum_gap=_atomic_distance(scene),
     ).F
 
 
 def _steric(scene: Scene, gaps: Floats) -> Any:
-    medium, hold = scene.medium, scene.adhesion.equilibrium_distance
+    medium, hold = scene.medium, _atomic_distance(scene)
     if medium.kind != "liquid" or medium.brush_thickness <= hold:
         return np.zeros(gaps.shape)
     return laws.steric(
@@ -312,7 +330,7 @@ def _custom(place: str, scene: Scene, gaps: Floats) -> Any:
     names = list(scene.terms)
     if _CUSTOM.index(place) >= len(names):
         return np.zeros(gaps.shape)
-    held = np.maximum(gaps, scene.adhesion.equilibrium_distance)
+    held = np.maximum(gaps, _atomic_distance(scene))
     return np.vectorize(functools.partial(scene.term_force, names[_CUSTOM.index(place)]), otypes=[float])(held)
 
 
