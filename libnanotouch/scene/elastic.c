@@ -215,6 +215,6 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
     const int adheres = plan->source != NT_ADHESION_NONE && plan->visits_contact;
     plan->around_error = adheres ? nt_plan_around_error(plan, 1) : 0.0;
     if (adheres && plan->demand.quantity == NT_QUANTITY_FORCE && isfinite(worst))
-        worst = fmax(worst, plan->around_error + nt_plan_tail_error(plan));
+        worst = fmax(worst, nt_plan_tail_error(plan));
     return worst;
 }

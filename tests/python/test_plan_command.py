@@ -106,7 +106,8 @@ def test_what_is_given_replaces_the_demand_of_the_file(file: str, capsys: pytest
     data = ask(capsys, file, "--quantity", "force", "--relative-accuracy", "1e-7", "--force-floor", "2pN")
     assert (data["quantity"], data["force_floor"]) == ("force", 2e-12)
     rigid = max(data["rigid_error"], data["around_error"])
-    assert 0.0 < rigid < data["bound"] <= rigid + 1e-7
+    assert data["deforms"]  # beside the fold the rigid sum errs by more than the finest table
+    assert 1e-7 < data["bound"] < rigid
     wanted = Scene.from_toml(file).plan(relative_accuracy=1e-7, force_floor=2e-12)
     assert data == as_json(wanted.explain())
 
