@@ -74,7 +74,7 @@ def _pair(first: ArrayLike, name: str, second: ArrayLike, second_name: str) -> t
 
 
 def _with_modulus(values: ArrayLike, name: str, effective_modulus: ArrayLike) -> tuple[Floats, Floats]:
-    if not np.all(np.asarray(effective_modulus) > 0.0):
+    if not np.all(as_floats(effective_modulus, "effective_modulus") > 0.0):
         raise InvalidValue(f"effective_modulus = {effective_modulus!r} Pa: it must be above 0 Pa")
     return _pair(values, name, effective_modulus, "effective_modulus")
 

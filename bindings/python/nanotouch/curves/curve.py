@@ -15,6 +15,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from .._arrays import as_floats
 from ..errors import InvalidValue
 
 Role = Literal["approach", "pause", "retract"]
@@ -52,11 +53,11 @@ class Segment:
             raise InvalidValue(f"role: {self.role!r}, expected one of {', '.join(get_args(Role))}")
         if self.force is None and self.deflection is None:
             raise InvalidValue("segment: neither force nor deflection is given")
-        for key in ("time", "z", "force", "deflection"):
+        for key in ("z", "time", "force", "deflection"):
             value = getattr(self, key)
             if value is None:
                 continue
-            array = np.ascontiguousarray(value, dtype=np.float64).view()
+            array = as_floats(value, key).view()
             if array.ndim != 1 or array.size != len(self.z):
                 raise InvalidValue(f"{key}: shape {array.shape}, expected that of z, ({len(self.z)},)")
             array.flags.writeable = False

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import check_between
+from .._arrays import as_floats, check_between
 from ..errors import InvalidValue, require
 
 AIR_DENSITY = 1.18  # kg/m^3, at 25 degrees Celsius and 1013 hPa
@@ -35,7 +35,7 @@ def hydrodynamic_function(reynolds: ArrayLike) -> NDArray[np.complex128]:
     reynolds : array_like
         Re, 1e-6 to 1e4.
     """
-    Re = np.asarray(reynolds, dtype=np.float64)
+    Re = as_floats(reynolds, "reynolds")
     if not bool(np.all((Re >= 1e-6) & (Re <= 1e4))):
         raise InvalidValue(f"reynolds: {reynolds!r}, valid is 1e-6 to 1e4")
     special = require("scipy.special", "curves")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import check_between
+from .._arrays import as_floats, check_between
 from ..errors import InvalidValue, require
 
 TEMPERATURES = (77.0, 1000.0)  # [K]
@@ -76,7 +76,7 @@ def thermal_tune(
     correction : float
         0.971 for a true deflection of the end, 0.817 for an optical lever.
     """
-    f, S = np.asarray(frequency, np.float64), np.asarray(density, np.float64)
+    f, S = as_floats(frequency, "frequency"), as_floats(density, "density")
     if f.ndim == S.ndim == 1 and f.size and f[0] == 0.0:
         f, S = f[1:], S[1:]
     if f.ndim != 1 or f.shape != S.shape or f.size < 16:

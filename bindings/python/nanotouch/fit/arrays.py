@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nanotouch._arrays import Floats
+from nanotouch._arrays import Floats, as_floats
 
 from .contact_part import Contact, contact_of
 from .fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
@@ -101,7 +101,7 @@ def fit_points(
         Parameters to hold, by name, at a value [SI].
     """
     compiled, chosen = extension(), find(model)
-    X, F = np.asarray(position, dtype=np.float64), np.asarray(force, dtype=np.float64)
+    X, F = as_floats(position, "position"), as_floats(force, "force")
     held = dict(fixed or {})
     layer_of(chosen, None, None, held)
     if contact_point is not None:

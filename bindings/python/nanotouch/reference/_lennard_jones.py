@@ -83,7 +83,7 @@ class LennardJones:
 
     def at(self, q: ArrayLike) -> tuple[Floats, Floats]:
         """Indentation and load at any q of the curve: cubics between the entries."""
-        q = np.asarray(q, dtype=np.float64)
+        q = as_floats(q, "q")
         step = (self.q[-1] - self.q[0]) / (self.q.size - 1)
         i = np.clip(((q - self.q[0]) / step).astype(np.intp), 0, self.q.size - 2)
         t = (q - self.q[i]) / step

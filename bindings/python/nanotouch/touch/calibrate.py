@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nanotouch import _core
+from nanotouch._arrays import as_floats
 from nanotouch.errors import DeviceError, InvalidValue, require
 from nanotouch.scene import Rig
 from nanotouch.scene.plan import Plan
@@ -99,7 +100,7 @@ def drive(
     DeviceError
         It was stopped: the message says by what.
     """
-    points = np.asarray(path, np.float64)
+    points = as_floats(path, "path")
     if points.ndim != 1 or points.size < 2 or not np.all(np.isfinite(points)):
         raise InvalidValue(f"path: shape {points.shape}, expected at least 2 finite numbers")
     if not 1e-6 <= period <= 0.999:
@@ -362,7 +363,7 @@ def thermal(
     from nanotouch.curves.thermal import thermal_tune
 
     tune = thermal_tune(frequency, density, averages=averages, temperature=temperature, correction=correction)
-    peak = float(np.max(np.asarray(density, np.float64)))
+    peak = float(np.max(as_floats(density, "density")))
     if peak < LEAST_PEAK * tune.floor * (1.0 + 5.0 / math.sqrt(averages)):
         raise InvalidValue(f"thermal motion: its peak is {peak / tune.floor:.2g} times the detector's noise, at least "
                            f"{LEAST_PEAK:g} is needed: take Sader's method or a reference lever")  # fmt: skip

@@ -78,6 +78,8 @@ def checked(columns: Mapping[str, ArrayLike]) -> dict[str, NDArray[Any]]:
 
 
 def _converted(name: str, values: ArrayLike) -> NDArray[Any]:
+    if hasattr(values, "units") or hasattr(values, "unit"):
+        raise InvalidValue(f"column {name!r} carries a unit; convert it to {COLUMNS[name].unit or 'a number'}")
     array = np.asarray(values)
     if array.ndim != 1 or array.dtype.kind not in "fiub" or isinstance(values, np.ma.MaskedArray):
         raise InvalidValue(f"column {name!r} must be an unmasked array of real numbers with one dimension")
