@@ -158,7 +158,7 @@ def _write(
 ) -> None:  # fmt: skip
     """Files, picture and what there is to say."""
     facts = args.answer | _facts(image)
-    with output.busy("undoing the tip"):
+    with stop.asked() as signals, output.busy("undoing the tip"):
         tip = images.RoundedCone(scene.tip.radius, scene.tip.half_angle)
         image.write(out / "scan.gwy", tip)
         surface, reports = image.without_tip(tip), []
@@ -166,8 +166,10 @@ def _write(
             surface, told = images.prepare(surface)
             reports = [f"surface.gwy: {report}\n" for report in told]
         images.write(out / "surface.gwy", replace(surface, channel=images.READY))
+        output.write_json(out / "scan.json", facts)
     print("".join(reports), end="")
-    output.write_json(out / "scan.json", facts)
+    if signals:
+        raise stop.Stopped(signals[0], f"all but the picture is in {out}")
     try:
         draw(image, out / "scan.png")
     except MissingExtra as missing:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 import os
 import signal
+import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,6 +17,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import images
+from nanotouch.scan import scanner
 from nanotouch.units import in_words
 from nanotouch_app import output
 from nanotouch_app.main import main
@@ -87,8 +90,8 @@ def test_two_digits_in_words() -> None:
 
 @contextmanager
 def interrupted(_: str) -> Iterator[Callable[[float], None]]:
-    """A progress bar that presses Ctrl-C when it is told something."""
-    yield lambda _: os.kill(os.getpid(), signal.SIGINT)
+    """A progress bar that presses Ctrl-C once something is done."""
+    yield lambda done: os.kill(os.getpid(), signal.SIGINT) if done > 0.0 else None
 
 
 @pytest.mark.parametrize(("lines", "kept"), [(80, 64), (8, 8)])
@@ -103,6 +106,25 @@ def test_ctrl_c_keeps_the_lines_that_are_done(
     found = images.read(tmp_path / "out" / "scan.gwy", "Height")
     assert found.shape == (kept, 4)
     assert found.pixel_size[0] == pytest.approx(nt.surface.flat().size[0] / lines)
+
+
+def test_a_scan_ends_while_a_strip_is_computed() -> None:
+    """What the compiled code has in hand, here 5 s of it, is not waited for; the lines before are kept."""
+    computes, told = threading.Event(), []
+
+    def work(number: int) -> int:
+        if number == 2:
+            computes.wait(5.0)
+        return number
+
+    def waits(done: int) -> bool:
+        return done < 2
+
+    start = time.monotonic()
+    assert scanner._each(work, range(9), lambda _, number: told.append(number), waits, 2) == 2
+    assert time.monotonic() - start < 3.0
+    assert told == [0, 1]
+    computes.set()
 
 
 def session_and_scan() -> tuple[nt.Session, nt.Scan]:

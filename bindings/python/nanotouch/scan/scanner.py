@@ -5,11 +5,11 @@ phase, through the rig's stage."""
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+import threading
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -32,6 +32,8 @@ else:
 STRIP = 64
 """lines that follow one coming down of the tip; strips go to the cores, with the same result on any number of them"""
 
+
+ASKED_EVERY = 0.1  # whether a scan is to end [s]
 
 Result = TypeVar("Result")
 Progress = Callable[[float], bool | None]
@@ -121,18 +123,52 @@ class Image(NamedTuple):
 
 
 def _each(
-    work: Callable[[int], Result], items: range, kept: Callable[[int, Result], bool | None], threads: int | None
-) -> int:
+    work: Callable[[int], Result], items: range, kept: Callable[[int, Result], bool | None],
+    waits: Callable[[int], bool | None], threads: int | None,
+) -> int:  # fmt: skip
     """Work on the cores; results are told in their order, with their number. False, or what that raises, ends the
-    rest. How many were told."""
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        try:
-            for number, result in enumerate(pool.map(work, items)):
-                if kept(number, result) is False:
-                    return number + 1
-        finally:
-            pool.shutdown(cancel_futures=True)
+    rest. How many were told.
+
+    While one is awaited ``waits`` is asked, with how many were told, and may end it likewise. What the compiled code
+    has in hand then is not waited for: it may take a minute."""
+    found: dict[int, Result | BaseException] = {}
+    todo, arrived, left = iter(items), threading.Condition(), []
+
+    def labor() -> None:
+        while not left:
+            with arrived:
+                number = next(todo, None)
+            if number is None:
+                return
+            try:
+                result: Result | BaseException = work(number)
+            except BaseException as error:
+                result = error
+            with arrived:
+                found[number] = result
+                arrived.notify()
+
+    for _ in range(min(threads or os.cpu_count() or 1, len(items))):
+        threading.Thread(target=labor, daemon=True).start()
+    try:
+        for told, number in enumerate(items):
+            while not _has(found, number, arrived):
+                if waits(told) is False:
+                    return told
+            result = found.pop(number)
+            if isinstance(result, BaseException):
+                raise result
+            if kept(told, result) is False:
+                return told + 1
+    finally:
+        left.append(True)
     return len(items)
+
+
+def _has(found: Mapping[int, Any], number: int, arrived: threading.Condition) -> bool:
+    """Whether it has arrived, after a short wait."""
+    with arrived:
+        return arrived.wait_for(lambda: number in found, ASKED_EVERY)
 
 
 class Scanner(Lever):
@@ -217,7 +253,8 @@ class Scanner(Lever):
         seed : int
             Of the noise.
         progress : callable, optional
-            Told the share that is done. False ends the scan: the image has the lines so far.
+            Told the share that is done, ten times a second at least. False ends the scan: the image has the lines so
+            far.
         threads : int, optional
             By default one for each core. The image is the same on any number.
         """
@@ -229,10 +266,10 @@ class Scanner(Lever):
             count = min(STRIP, lines - first)
             out[:, :, first : first + count] = self._core.strip(first, count, seed).transpose(1, 2, 0, 3)
 
-        def kept(done: int, _: None) -> bool | None:
-            return None if progress is None else progress((done + 1) / len(starts))
+        def waits(done: int) -> bool | None:
+            return None if progress is None else progress(done / len(starts))
 
-        return self._image(out[:, :, : STRIP * _each(strip, starts, kept, threads)])
+        return self._image(out[:, :, : STRIP * _each(strip, starts, lambda done, _: waits(done + 1), waits, threads)])
 
     def steady(
         self,
@@ -252,7 +289,8 @@ class Scanner(Lever):
         threads : int, optional
             By default one for each core. The image is the same on any number.
         progress : callable, optional
-            Told the share that is done. False ends the scan: the image has the lines so far.
+            Told the share that is done, ten times a second at least. False ends the scan: the image has the lines so
+            far.
 
         Raises
         ------
@@ -276,9 +314,12 @@ class Scanner(Lever):
                     f"line {line}, pixel {pixel}: no motion of the set point repeats each period there; a scan in time "
                     "(run(), nanotouch scan without --steady) has no such need"
                 )
-            return None if progress is None else progress((line + 1) / lines)
+            return waits(line + 1)
 
-        done = out[:, : _each(take, range(lines), kept, threads)]
+        def waits(done: int) -> bool | None:
+            return None if progress is None else progress(done / lines)
+
+        done = out[:, : _each(take, range(lines), kept, waits, threads)]
         return self._image(np.stack([done, done]))
 
     def _image(self, out: Floats) -> Image:
