@@ -138,6 +138,7 @@ set(nanotouch_sources_curves
     curves/line.c
     curves/pieces.c
     curves/read.c
+    curves/ringing.c
     curves/robust.c
     curves/ruptures.c
     curves/wave.c)

@@ -8,6 +8,7 @@
 #include "curves/joint.h"
 #include "curves/line.h"
 #include "curves/parts.h"
+#include "curves/ringing.h"
 #include "curves/robust.h"
 
 static const double largest_value = 1.0; /* m or N: beyond, the unit is surely not SI */
@@ -171,6 +172,8 @@ nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, do
     const nt_status status = read_both(curve, &how, &free, reading);
     if (status != NT_OK)
         return status;
+    if (reading->retract.count)
+        nt_curve_doubt_ringing(reading);
     const nt_curve_branch *first = reading->approach.count ? &reading->approach : &reading->retract;
     if (first->count) {
         nt_curve_find_contact(first, curve->spring_constant, free, reading);

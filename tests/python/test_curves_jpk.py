@@ -165,7 +165,7 @@ def test_the_work_grows_as_the_number_of_curves(tmp_path: Path) -> None:
     ("old", "new", "message"),
     [
         (b"num-points=100", b"num-points=101", "100 heights, 100 forces, but states 101"),
-        (b"type=signedinteger", b"type=float", "type 'float', which is not read"),
+        (b"type=signedinteger", b"type=complex", "type 'complex', which is not read"),
         (b"force-segment-header.duration=1.0", b"", "lacks 'force-segment-header.duration'"),
         (b"duration=1.0", b"duration=nan", "'nan', no number"),
         (

@@ -128,6 +128,7 @@ static py::dict read_curve(const std::pair<Array, Array> &approach, const std::p
     out["support"] = int(reading.support);
     out["pull_off"] = std::array<double, 3>{reading.pull_off_least, reading.pull_off_most, reading.pull_off_sigma};
     out["offset"] = std::array<double, 2>{reading.offset, reading.offset_sigma};
+    out["ringing"] = reading.ringing;
     out["contact_points"] = points;
     out["contact_point"] = std::array<double, 2>{reading.contact_point.value, reading.contact_point.sigma};
     return out;

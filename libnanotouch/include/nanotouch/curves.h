@@ -197,6 +197,7 @@ typedef struct nt_curve_reading {
      * rectangular errors. */
     double pull_off_least, pull_off_most; /* what it grows by from the last point before a rupture to the next is in */
     double pull_off_sigma;                /* standard uncertainty of both ends [N] */
+    double ringing;      /* amplitude at the lowest point, which both ends leave open; 0: none is evident [N] */
     double offset;       /* of the tail below the approach [N]; NaN where there is no tail or no approach */
     double offset_sigma; /* [N] */
     nt_curve_rupture rupture[NT_CURVE_RUPTURES]; /* from the sample outwards */

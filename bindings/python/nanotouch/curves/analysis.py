@@ -167,6 +167,13 @@ def _interval_notes(read: Mapping[str, Any], depth: float) -> list[str]:
     offset, sigma = read["offset"]
     between = f"the pull-off is {least * 1e9:.3g} to {most * 1e9:.3g} nN"
     notes = []
+    ringing = read["ringing"]
+    if ringing > 0.0:
+        notes.append(
+            f"the force swings to both sides of the free level after the turn, by {ringing * 1e9:.3g} nN at the lowest "
+            f"point, as a lever that rings does: {between}"
+        )
+    least, most = least + ringing, most - ringing
     if read["support"] == _BOUND:
         notes.append(
             f"the retraction ends {offset * 1e9:.3g} nN below the approach, more than drag explains: nothing of it is "
