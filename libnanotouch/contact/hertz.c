@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Hertz 1881: a paraboloid of radius R on an elastic half-space without adhesion (paper, Eq. 4-6). Valid for a << R. */
-#include "core/same_bits.h"
-#include "nanotouch/contact.h"
+#include "contact/hertz.h"
 
 #include <math.h>
 
+#include "core/same_bits.h"
+
 nt_law_value nt_hertz_eval(const nt_contact *contact, double indentation)
 {
-    if (indentation <= 0.0)
-        return (nt_law_value){0};
-    const double a = sqrt(contact->radius) * sqrt(indentation);
-    const double k = 2.0 * contact->effective_modulus * a;
-    const double F = 2.0 / 3.0 * k * indentation;
-    return (nt_law_value){.U = 0.4 * F * indentation, .F = F, .k = k, .a = a};
+    return nt_hertz_law(contact->radius, contact->effective_modulus, indentation);
 }
 
 double nt_hertz_force(const nt_contact *contact, double indentation)

@@ -25,23 +25,27 @@ void nt_follow_expect(const nt_supervisor *supervisor, nt_supervisor_state *stat
 static double lost_in_lift(const nt_supervisor *supervisor, const nt_supervisor_state *state)
 {
     const int lifts = state->state >= NT_RETRACT && isfinite(state->stopped);
+    if (!lifts)
+        return 0.0;
     const double late = supervisor->limits.retract_speed * state->late / supervisor->stage_share;
-    return lifts ? supervisor->lift_share * fabs(state->expected - state->stopped) + late : 0.0;
+    return supervisor->lift_share * fabs(state->expected - state->stopped) + late;
 }
 
-nt_state nt_follow_judge(const nt_supervisor *supervisor, nt_supervisor_state *state, double position, int tells_force)
+int nt_follow_is_off(const nt_supervisor *supervisor, nt_supervisor_state *state, double position)
 {
-    const nt_limits *limits = &supervisor->limits;
     const double slack = lesser(supervisor->stage_most, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
     const double below = position - state->expected; /* a stop may be farther up than it was told */
     const double off = state->state >= NT_RETRACT ? below : fabs(below);
     if (off <= slack + lost_in_lift(supervisor, state)) {
         state->off_run = 0;
-        return NT_RUN;
+        return 0;
     }
-    if (++state->off_run < FOLLOW_TICKS)
-        return NT_RUN;
-    const int lasts = state->off_run * supervisor->period > limits->follow_time;
+    return ++state->off_run >= FOLLOW_TICKS;
+}
+
+nt_state nt_follow_judge(const nt_supervisor *supervisor, nt_supervisor_state *state, int tells_force)
+{
+    const int lasts = state->off_run * supervisor->period > supervisor->limits.follow_time;
     if (state->state < NT_RETRACT && lasts)
         state->lift = NT_LIFT_WAITS;
     else if (state->state >= NT_RETRACT && !tells_force)

@@ -75,8 +75,12 @@ static int falls_on(const nt_supervisor *supervisor, nt_supervisor_state *state,
 int nt_lift_rises(const nt_supervisor *supervisor, nt_supervisor_state *state, double position)
 {
     const int goes = state->state >= NT_RETRACT && state->lift == NT_LIFT_GOES && state->lifts;
-    if (!goes)
+    if (!goes) { /* from here it will */
         state->turn_position = state->top_position = position;
+        state->fall_position = INFINITY;
+        state->fall_run = 0;
+        return 1;
+    }
     state->fall_run = falls_on(supervisor, state, position) ? state->fall_run + 1u : 0u;
     if (state->fall_run < GROWTH_TICKS)
         return 1;

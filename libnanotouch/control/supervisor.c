@@ -103,7 +103,7 @@ static nt_state judge_validity(const nt_supervisor *supervisor, nt_supervisor_st
     const uint32_t slave = !bad || flags & NT_SAMPLE_MASTER_ALONE ? seen_of_slave(supervisor, sample) : 0u;
     state->seen = (is_fresh(sample->master_age, supervisor->master_period) ? master : 0u) |
                   (is_fresh(sample->age, supervisor->period) ? slave : 0u);
-    if (!bad && (master | slave) == NT_SEES_ALL && isfinite(sample->age) && sample->age >= 0.0) {
+    if (!bad && (master | slave) == NT_SEES_ALL && sample->age >= 0.0 && sample->age < HUGE_VAL) {
         state->invalid_run = 0;
         return NT_RUN;
     }
@@ -198,9 +198,10 @@ static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state
 {
     const nt_stuck_limits limits = {supervisor->stuck_distance, supervisor->noise};
     const double *position = sample->stage_position;
-    const nt_state verdict =
-        worse(nt_stuck_judge(&limits, &state->deflection, sample->deflection[NT_Z], position, saturated),
-              nt_stuck_judge(&supervisor->amplitude.stuck, &state->amplitude, sample->amplitude, position, 0));
+    nt_state verdict = nt_stuck_judge(&limits, &state->deflection, sample->deflection[NT_Z], position, saturated);
+    if (supervisor->amplitude.stuck.distance != 0.0)
+        verdict = worse(
+            verdict, nt_stuck_judge(&supervisor->amplitude.stuck, &state->amplitude, sample->amplitude, position, 0));
     return verdict == NT_RUN ? NT_RUN : blame(state, NT_REASON_STUCK, verdict);
 }
 
@@ -245,7 +246,9 @@ static double known_lateness(const nt_supervisor *supervisor, const nt_sample *s
 static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     const double position = sample->stage_position[NT_Z];
-    const nt_state found = nt_follow_judge(supervisor, state, position, tells_force(supervisor, state, sample));
+    const nt_state found = nt_follow_is_off(supervisor, state, position)
+                               ? nt_follow_judge(supervisor, state, tells_force(supervisor, state, sample))
+                               : NT_RUN;
     const nt_state place = found == NT_RUN ? NT_RUN : blame(state, NT_REASON_FOLLOW, found);
     return nt_lift_rises(supervisor, state, position) ? place
                                                       : worse(place, blame(state, NT_REASON_FOLLOW, NT_LATCHED));

@@ -44,6 +44,11 @@ static int moves_sideways(const nt_touch_state *state)
            state->target_y != state->command.stage_position[NT_Y];
 }
 
+static int has_backed_off(const nt_touch_state *state)
+{
+    return state->passivity.gain < 1.0 || state->passivity_sideways[NT_X].gain < 1.0;
+}
+
 static int is_exhausted(const nt_touch_state *state)
 {
     return nt_passivity_is_exhausted(&state->passivity) || nt_passivity_is_exhausted(&state->passivity_sideways[NT_X]);
@@ -53,7 +58,8 @@ static nt_state supervise(const nt_touch *touch, nt_touch_state *state, const nt
 {
     const nt_situation situation = {.reference = state->reference,
                                     .moves_sideways = moves_sideways(state),
-                                    .unstable = state->mode == NT_MODE_TOUCH && is_exhausted(state)};
+                                    .unstable =
+                                        state->mode == NT_MODE_TOUCH && has_backed_off(state) && is_exhausted(state)};
     return nt_supervisor_step(&touch->supervisor, &state->supervisor, sample, &situation);
 }
 
@@ -119,7 +125,7 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     drive_motor(touch, state, act(touch, state));
     nt_sideways_drive(touch, state);
     state->command.stage_position[NT_Z] = drive_stage(touch, state, sample);
-    if (state->passivity.gain < 1.0 || state->passivity_sideways[NT_X].gain < 1.0)
+    if (has_backed_off(state))
         state->supervisor.reasons |= NT_REASON_BACKED_OFF;
     state->command.motor_force[NT_Z] = state->motor_force;
     state->command.drive_amplitude = touch->drive_amplitude;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * xoshiro256++ 1.0 (Blackman and Vigna, "Scrambled linear pseudorandom number generators", 2019), seeded by splitmix64
  * (Steele, Lea and Flood 2014) as its authors advise: no seed gives the forbidden all-zero state. */
-#include "nanotouch/random.h"
+#include "core/noise.h"
 
 #include <math.h>
 
@@ -85,7 +85,7 @@ nt_noise nt_noise_of(uint64_t seed, uint32_t channel)
 
 void nt_noise_seek(nt_noise *noise, uint64_t tick)
 {
-    noise->position = tick << 32;
+    noise_seek(noise, tick);
 }
 
 static inline double next_uniform(nt_noise *noise)

@@ -68,6 +68,11 @@ static int is_resolved(const place *a, const place *b)
     return fabs(b->drive - expected) <= UNRESOLVED * (fabs(a->drive) + fabs(b->drive));
 }
 
+static int is_monotone(const place *a, const place *b)
+{
+    return a->slope > 0.0 && b->slope > 0.0;
+}
+
 /* Newton's distance along the way to the equilibrium; infinite where there is none ahead. */
 static double newton_distance(const place *p)
 {
@@ -84,9 +89,8 @@ static nt_status step_downhill(walk *w, const place *a, double *step, place *b)
         *b = place_at(w, a->z + w->way * reach);
         if (!place_is_finite(b))
             return NT_E_NOT_FINITE;
-        const int resolved = is_resolved(a, b);
-        const int monotone = a->slope > 0.0 && b->slope > 0.0;
-        if (b->drive > 0.0 ? resolved || reach <= SHORTEST * length : (resolved && monotone) || reach <= length) {
+        if (b->drive > 0.0 ? reach <= SHORTEST * length || is_resolved(a, b)
+                           : reach <= length || (is_monotone(a, b) && is_resolved(a, b))) {
             *step = reach;
             return NT_OK;
         }

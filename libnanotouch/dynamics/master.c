@@ -56,6 +56,13 @@ static double way_of(const nt_master_model *model, const nt_master_state *state,
     return pull > 0.0 ? 1.0 : -1.0;
 }
 
+/* What friction leaves of a pull; nothing where the arm sticks. */
+static double beyond_friction(const nt_master_model *model, const nt_master_state *state, double pull)
+{
+    const double way = way_of(model, state, pull);
+    return way == 0.0 ? 0.0 : pull - way * model->master.friction;
+}
+
 static void step_with_friction(const nt_master_model *model, nt_master_state *state, double force, double rest)
 {
     const nt_oscillator_constants constants = constants_of(model);
@@ -96,9 +103,7 @@ void nt_master_step(const nt_master_model *model, nt_master_state *state, double
     }
     const nt_oscillator_constants c = constants_of(model);
     const double pull = force - c.stiffness * (state->position - rest) - c.damping * state->speed;
-    const double way = way_of(model, state, pull);
-    state->acceleration =
-        way == 0.0 && model->master.friction > 0.0 ? 0.0 : (pull - way * model->master.friction) / c.mass;
+    state->acceleration = (model->master.friction > 0.0 ? beyond_friction(model, state, pull) : pull) / c.mass;
 }
 
 double nt_master_grip_force(const nt_master_model *model, const nt_master_state *state, double effort, double rest)

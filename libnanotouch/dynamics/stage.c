@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/clamp.h"
 #include "nanotouch/material.h"
 #include "oscillator.h"
 
@@ -74,7 +75,7 @@ static double with_creep(const nt_stage_model *model, nt_stage_state *state, dou
 static nt_oscillator loaded(const nt_stage_model *model, double stiffness)
 {
     const double rate = 2.0 * NT_PI * model->stage.resonance, share = stiffness / model->stage.stiffness;
-    if (share * model->stage.quality * fmin(1.0, rate * model->period) < NEGLIGIBLE)
+    if (share * model->stage.quality * lesser(rate * model->period, 1.0) < NEGLIGIBLE)
         return model->oscillator;
     const nt_oscillator_constants constants = constants_of(&model->stage, share);
     return nt_oscillator_over(&constants, model->period);

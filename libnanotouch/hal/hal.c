@@ -94,7 +94,7 @@ static void keep_valid(nt_reading *reading)
 /* A device that fails is lost, whatever it says of it; a model that fails is the caller's matter. */
 static int is_loss(const nt_hal *hal, nt_status status)
 {
-    return status == NT_E_DEVICE || (status != NT_OK && !hal->is_model);
+    return status != NT_OK && (status == NT_E_DEVICE || !hal->is_model);
 }
 
 nt_status nt_hal_read(nt_hal *hal)

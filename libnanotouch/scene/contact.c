@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "contact/hertz.h"
 #include "scene/parts.h"
 
 static int is_jkr_shape(const nt_plan *plan)
@@ -50,31 +51,39 @@ void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adh
         plan->capture_gap = 0.0;
 }
 
+static const nt_law_value nowhere = {NAN, NAN, NAN, NAN};
+
+/* All NaN where a law with a fold has no contact. */
+static nt_law_value adhesive_eval(const nt_plan *plan, nt_form form, double indentation)
+{
+    nt_law_value value = nowhere;
+    if (form == NT_FORM_JKR)
+        (void)nt_jkr_shape_eval(&plan->jkr, indentation, NT_BRANCH_STABLE, &value);
+    else if (form == NT_FORM_EXACT)
+        (void)nt_maugis_eval(&plan->maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
+    else
+        (void)nt_maugis_table_eval(&plan->table, form == NT_FORM_POLISHED ? NT_TIER_POLISHED : NT_TIER_TABLE,
+                                   indentation, NT_BRANCH_STABLE, &value);
+    return value;
+}
+
 /* With no default: a form without its case does not compile. */
 nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation)
 {
-    nt_law_value value = {NAN, NAN, NAN, NAN}; /* where there is no contact */
     switch (form) {
     case NT_FORM_PARABOLOID:
         return nt_hertz_eval(&plan->contact, indentation);
     case NT_FORM_SERIES:
         return nt_sphere_series_eval(plan->shape.radius, plan->contact.effective_modulus, indentation);
     case NT_FORM_SHAPE:
-        return nt_shape_eval(&plan->shape, plan->contact.effective_modulus, indentation);
+        return nt_shape_law(&plan->shape, plan->contact.effective_modulus, indentation);
     case NT_FORM_DEFORMED: /* is in the table, with all that acts around it */
         return (nt_law_value){0.0, 0.0, 0.0, 0.0};
     case NT_FORM_JKR:
-        (void)nt_jkr_shape_eval(&plan->jkr, indentation, NT_BRANCH_STABLE, &value);
-        return value;
     case NT_FORM_TABLE:
-        (void)nt_maugis_table_eval(&plan->table, NT_TIER_TABLE, indentation, NT_BRANCH_STABLE, &value);
-        return value;
     case NT_FORM_POLISHED:
-        (void)nt_maugis_table_eval(&plan->table, NT_TIER_POLISHED, indentation, NT_BRANCH_STABLE, &value);
-        return value;
     case NT_FORM_EXACT:
-        (void)nt_maugis_eval(&plan->maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
-        return value;
+        return adhesive_eval(plan, form, indentation);
     case NT_FORM_OFF: /* not of contact; of places: nt_plan_local_eval */
     case NT_FORM_ON:
     case NT_FORM_DERJAGUIN:
@@ -84,7 +93,7 @@ nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double inde
     case NT_FORM_LOCAL_EXACT:
         break;
     }
-    return value;
+    return nowhere;
 }
 
 int nt_plan_has_local_form(const nt_plan *plan)

@@ -40,9 +40,15 @@ double nt_plan_radius_at(const nt_plan *plan, const nt_place *place)
     return place ? place->radius.radius : plan->contact.radius;
 }
 
+/* Asked several times in each period: where nothing moves it, without a call. */
+static inline double capture_gap(const nt_plan *plan, const nt_place *place)
+{
+    return plan->relief.count == 0 ? plan->capture_gap : nt_plan_capture_gap(plan, place);
+}
+
 int nt_plan_is_attached(const nt_plan *plan, int attached, const nt_place *place, double gap)
 {
-    if (gap <= nt_plan_capture_gap(plan, place))
+    if (gap <= capture_gap(plan, place))
         return 1;
     return attached && gap <= nt_plan_release_gap(plan, place);
 }

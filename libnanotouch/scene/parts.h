@@ -63,6 +63,23 @@ static inline int nt_plan_follows(const nt_plan *plan)
 {
     return plan->relief.count > 0 || nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form);
 }
+/* nt_interaction_eval_gap and nt_interaction_advance_gap for a step that asks several times, at once where nothing but
+ * a contact acts, the same everywhere, and the tip is in it; where the contact has been made and still is. */
+static inline nt_law_value nt_interaction_law(const nt_plan *plan, const nt_interaction_state *state,
+                                              const nt_place *place, double gap)
+{
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
+    const int is_alone = plan->on_count == 0 && plan->deformation.count == 0;
+    if (is_alone && gap <= plan->capture_gap && form != NT_FORM_OFF && !nt_form_is_local(form))
+        return nt_plan_contact_eval(plan, form, -gap);
+    return nt_interaction_eval_gap(plan, state, place, gap);
+}
+static inline void nt_interaction_move(const nt_plan *plan, nt_interaction_state *state, const nt_place *place,
+                                       double gap)
+{
+    if (!(state->attached && plan->relief.count == 0 && gap <= plan->capture_gap))
+        nt_interaction_advance_gap(plan, state, place, gap);
+}
 /* {U, F, k, a} and dU/dR of a local form for the contact of a place; all NaN where it refuses. A law that cannot follow
  * the radius says dU/dR = U/(2 R), as Hertz. */
 nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, const nt_contact *contact, double indentation);

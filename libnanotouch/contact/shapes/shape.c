@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "contact/hertz.h"
 #include "contact/shapes/profile.h"
 #include "core/strided.h"
 #include "nanotouch/field.h"
@@ -110,10 +111,8 @@ static nt_law_value eval_rim(const nt_shape *shape, double modulus, double inden
     double length;
     const nt_rim rim = rim_of(shape, &length);
     const double depth = indentation / length;
-    if (depth < rim.cap) { /* on the cap */
-        const nt_contact cap = paraboloid_of(shape, modulus);
-        return nt_hertz_eval(&cap, indentation);
-    }
+    if (depth < rim.cap) /* on the cap */
+        return nt_hertz_law(shape->radius, modulus, indentation);
     return to_si(nt_rim_point(&rim, nt_rim_find_depth(&rim, depth)), modulus, length);
 }
 
@@ -123,10 +122,9 @@ nt_law_value nt_shape_eval(const nt_shape *shape, double effective_modulus, doub
         return (nt_law_value){0};
     if (!isfinite(indentation))
         return (nt_law_value){NAN, NAN, NAN, NAN};
-    const nt_contact paraboloid = paraboloid_of(shape, effective_modulus);
     switch (shape->kind) {
     case NT_SHAPE_PARABOLOID:
-        return nt_hertz_eval(&paraboloid, indentation);
+        return nt_hertz_law(shape->radius, effective_modulus, indentation);
     case NT_SHAPE_SPHERE:
         return to_si(nt_sphere_point(nt_sphere_find_depth(indentation / shape->radius)), effective_modulus,
                      shape->radius);

@@ -282,7 +282,7 @@ static double powered(nt_sim_slave *slave, double driven, double time)
     return reached;
 }
 
-double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time)
+double nt_sim_stage_by_faults(nt_sim_slave *slave, double drive, double time)
 {
     const nt_sim_link *link = &slave->link;
     double driven = drive;
@@ -304,14 +304,14 @@ double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time)
     return slave->driven;
 }
 
-double nt_sim_stage_hysteresis(const nt_sim_link *link)
+double nt_sim_hysteresis_by_faults(const nt_sim_link *link)
 {
     int from = 0;
     const nt_fault *fault = next_active(link, NT_FAULT_HYSTERESIS, &from);
     return fault != NULL ? fault->value : link->rig.stage.hysteresis;
 }
 
-double nt_sim_spoil_motor(const nt_sim_link *link, double force)
+double nt_sim_motor_by_faults(const nt_sim_link *link, double force)
 {
     double pushed = force;
     for (int i = 0; i < link->faults.count; i++) {
@@ -322,7 +322,7 @@ double nt_sim_spoil_motor(const nt_sim_link *link, double force)
     return pushed;
 }
 
-double nt_sim_stage_drift(const nt_sim_link *link)
+double nt_sim_drift_of_faults(const nt_sim_link *link)
 {
     double sum = 0.0;
     const nt_fault *fault;

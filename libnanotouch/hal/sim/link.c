@@ -70,7 +70,7 @@ static double within_range(double value, double range)
 
 void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading)
 {
-    double age = link->rig.converters.adc_latency + (double)(link->tick - link->converted) * link->period;
+    double age = link->rig.converters.adc_latency + (double)(int64_t)(link->tick - link->converted) * link->period;
     reading->size = sizeof *reading;
     reading->sequence = link->converted + 1u;
     reading->valid = link->valid;
@@ -81,7 +81,8 @@ void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *r
     reading->felt[NT_Z] = within_range(reading->felt[NT_Z], sensors->felt->range);
     const int is_stale = link->faults.count > 0 && nt_sim_spoil(link, sensors, reading, &age);
     reading->time = time_now(link) - (age == 0.0 ? 0 : llround(age * 1e9));
-    link->last = (nt_sim_memory){reading->position[NT_Z], reading->felt[NT_Z], age, reading->sequence, link->tick};
+    const nt_sim_memory memory = {reading->position[NT_Z], reading->felt[NT_Z], age, reading->sequence, link->tick};
+    link->last = memory;
     if (!is_stale)
-        link->fresh = link->last;
+        link->fresh = memory;
 }

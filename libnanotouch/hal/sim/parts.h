@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "core/noise.h"
+#include "dynamics/sensor.h"
 #include "nanotouch/sim.h"
 
 #ifdef __cplusplus
@@ -27,7 +29,7 @@ static inline int nt_sim_is_converted(const nt_sim_link *link)
 /* The stream of a channel at the beginning of this tick. */
 static inline nt_noise *nt_sim_noise_now(nt_sim_link *link, int stream)
 {
-    nt_noise_seek(&link->noise[stream], link->tick);
+    noise_seek(&link->noise[stream], link->tick);
     return &link->noise[stream];
 }
 /* The two sensors of a half: of its position, and of what it feels. */
@@ -39,8 +41,7 @@ typedef struct nt_sim_sensors {
  * (nt_sim_give): a zero that drifts, drifts before that. */
 static inline double nt_sim_sense(nt_sim_link *link, const nt_sensor *sensor, nt_channel channel, double value)
 {
-    const nt_sensor endless = {sensor->noise, sensor->resolution, HUGE_VAL};
-    return nt_sensor_read(&endless, value, nt_sim_noise_now(link, (int)channel));
+    return nt_sensor_sense(sensor, value, nt_sim_noise_now(link, (int)channel));
 }
 /* What was sensed goes on its way: spoilt by faults, at its range, numbered, stamped, kept for a fault that lasts. */
 void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading);
@@ -83,13 +84,17 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave);
 /* --- tap.c: the same of a lever that taps --- */
 
 nt_status nt_sim_tap_init(nt_sim_slave *slave, const nt_sim_lock_in *lock_in);
-/* Asks for another drive. NT_E_NOT_FINITE, NT_E_RANGE. */
+/* Asks a lever that is driven for another drive. NT_E_NOT_FINITE, NT_E_RANGE. */
 nt_status nt_sim_tap_drive(nt_sim_slave *slave, double amplitude, double frequency);
 /* Does the lever swing, or shall it? */
-int nt_sim_taps(const nt_sim_slave *slave);
+int nt_sim_tap_swings(const nt_sim_tap *tap);
+static inline int nt_sim_taps(const nt_sim_slave *slave)
+{
+    return slave->tap.is_there && nt_sim_tap_swings(&slave->tap);
+}
 /* Over a place whose height is that of the surface now; base: z_b above that [m]. */
 nt_status nt_sim_tap_step(nt_sim_slave *slave, double base, double surface);
-/* What the lock-in amplifier shows in this tick. */
+/* What a lock-in amplifier that is there shows in this tick. */
 void nt_sim_tap_read(nt_sim_slave *slave, nt_reading *reading);
 
 /* --- pushed.c: what lies on the surface --- */
@@ -119,11 +124,30 @@ static inline int nt_sim_lost_periods(const nt_sim_link *link)
     return link->faults.count > 0 ? (int)fmin(nt_sim_sum_of(link, NT_FAULT_LATE), NT_SIM_LOST_MAX) : 0;
 }
 /* What stage, in this time [s], and motor make of what they are told [m], [N]. */
-double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time);
-double nt_sim_spoil_motor(const nt_sim_link *link, double force);
-double nt_sim_stage_hysteresis(const nt_sim_link *link);
+double nt_sim_stage_by_faults(nt_sim_slave *slave, double drive, double time);
+static inline double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time)
+{
+    if (slave->link.faults.count > 0)
+        return nt_sim_stage_by_faults(slave, drive, time);
+    slave->stood = slave->driven = drive;
+    return drive;
+}
+double nt_sim_motor_by_faults(const nt_sim_link *link, double force);
+static inline double nt_sim_spoil_motor(const nt_sim_link *link, double force)
+{
+    return link->faults.count > 0 ? nt_sim_motor_by_faults(link, force) : force;
+}
+double nt_sim_hysteresis_by_faults(const nt_sim_link *link);
+static inline double nt_sim_stage_hysteresis(const nt_sim_link *link)
+{
+    return link->faults.count > 0 ? nt_sim_hysteresis_by_faults(link) : link->rig.stage.hysteresis;
+}
 /* Of the whole frame, unseen by the read-out [m]. */
-double nt_sim_stage_drift(const nt_sim_link *link);
+double nt_sim_drift_of_faults(const nt_sim_link *link);
+static inline double nt_sim_stage_drift(const nt_sim_link *link)
+{
+    return link->faults.count > 0 ? nt_sim_drift_of_faults(link) : 0.0;
+}
 /* By how much the surface has risen [m]. */
 static inline double nt_sim_surface_jump(const nt_sim_link *link)
 {

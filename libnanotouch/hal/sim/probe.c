@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/clamp.h"
 #include "parts.h"
 #include "scene/parts.h"
 
@@ -41,7 +42,7 @@ static nt_law_value force_at(void *context, double gap)
     if (gap != probe->gap) {
         probe->gap = gap;
         probe->law = probe->plan->dents ? nt_dents_eval(&probe->plan->indentation, probe->dents, gap)
-                                        : nt_interaction_eval_gap(probe->plan, probe->interaction, probe->place, gap);
+                                        : nt_interaction_law(probe->plan, probe->interaction, probe->place, gap);
         if (probe->pushed)
             add_pushed(probe, gap);
     }
@@ -52,7 +53,7 @@ static void moved_to(void *context, double gap)
 {
     probe_context *probe = context;
     if (!probe->plan->dents) {
-        nt_interaction_advance_gap(probe->plan, probe->interaction, probe->place, gap);
+        nt_interaction_move(probe->plan, probe->interaction, probe->place, gap);
         return;
     }
     const double heat = probe->dents->dissipated;
@@ -142,7 +143,7 @@ static void slide(nt_sim_slave *slave, int parted, double gap)
         release(slave);
     if (slave->plan->dents && rubs)
         slide_in_dent(slave);
-    else
+    else if (rubs || slave->slide.placed) /* or has rubbed by another plan */
         nt_interaction_slide_gap(slave->plan, &slave->interaction, &slave->slide, &slave->place, &here);
 }
 
@@ -207,7 +208,8 @@ static void sides_of(const nt_sim_slave *slave, double gap, double force, double
     sides[NT_Y] = slopes[NT_Y] + pushed[NT_Y];
 }
 
-/* What there is at the end of a period; sides: of slopes and of what is pushed [N]. */
+/* What there is at the end of a period; sides: of slopes and of what is pushed [N]. Of a law that is no number peak and
+ * depth are those on the way. */
 static void tell_truth(nt_sim_slave *slave, const probe_context *context, const double sides[2])
 {
     const nt_friction_state *friction = &slave->slide.friction;
@@ -215,8 +217,8 @@ static void tell_truth(nt_sim_slave *slave, const probe_context *context, const 
     const double gap = slave->law_gap;
     slave->truth = (nt_truth){.gap = gap,
                               .tip_force = {sides[0] + friction->force[0], sides[1] + friction->force[1], law.F},
-                              .peak_force = fmax(context->peak, fabs(law.F)),
-                              .deepest_gap = fmin(context->deepest, gap),
+                              .peak_force = greater(fabs(law.F), context->peak),
+                              .deepest_gap = lesser(gap, context->deepest),
                               .contact_radius = law.a,
                               .surface_height = context->surface,
                               .tip_height = gap + context->surface,
@@ -248,7 +250,9 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
                              .surface = surface,
                              .gap = knows ? slave->law_gap : (double)NAN, /* another place: nothing is known there */
                              .law = slave->law,
-                             .deepest = HUGE_VAL};
+                             .peak = 0.0,
+                             .deepest = HUGE_VAL,
+                             .parted = 0};
     slave->pushed.left = 0;
     if (lie)
         nt_pushed_copy(&slave->pushed.laws, &pushed, &slave->pushed.state);

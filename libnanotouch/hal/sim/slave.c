@@ -57,6 +57,7 @@ static nt_status begin(nt_sim_slave *slave, const nt_sim_setup *setup)
     nt_sim_list_slave(slave);
     for (int i = 0; i < NT_AXES; i++)
         slave->converted.position[i] = slave->converted.felt[i] = NAN;
+    slave->converted.amplitude = slave->converted.lag = NAN;
     slave->start_height = nt_sim_surface_height(slave) + setup->clearance;
     slave->cantilever = nt_cantilever_at(setup->clearance);
     slave->place_x = slave->law_gap = NAN;       /* nothing is known yet */
@@ -102,15 +103,23 @@ static void read_sideways(const nt_sim_slave *slave, nt_reading *reading)
         reading->felt[i] = slave->truth.tip_force[i] / stiffness;
 }
 
+/* Amplitude and lag of the lever in this tick. */
+static void keep_swing(const nt_sim_tap *tap, double moment[2])
+{
+    moment[0] = tap->amplitude;
+    moment[1] = tap->lag;
+}
+
 nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
 {
     nt_sim_link *link = &slave->link;
     moment_now(slave, slave->moments[link->tick % NT_SIM_SLOTS]);
     nt_reading *converted = &slave->converted;
-    slave->tap.moments[link->tick % NT_SIM_SLOTS][0] = slave->tap.amplitude;
-    slave->tap.moments[link->tick % NT_SIM_SLOTS][1] = slave->tap.lag;
+    if (slave->tap.is_there)
+        keep_swing(&slave->tap, slave->tap.moments[link->tick % NT_SIM_SLOTS]);
     if (nt_sim_is_converted(link)) {
-        nt_sim_tap_read(slave, converted);
+        if (slave->tap.is_there)
+            nt_sim_tap_read(slave, converted);
         double seen[2];
         nt_sim_moment_before(link, slave->moments, seen);
         converted->position[NT_Z] = nt_sim_sense(link, &slave->stage_sensor, NT_CHANNEL_STAGE_POSITION, seen[0]);
@@ -183,7 +192,8 @@ nt_status nt_sim_slave_write(nt_sim_slave *slave, const nt_action *action)
 {
     if (!nt_sim_is_finite(action))
         return NT_E_NOT_FINITE;
-    const nt_status driven = nt_sim_tap_drive(slave, action->drive_amplitude, action->drive_frequency);
+    const nt_status driven =
+        slave->tap.is_there ? nt_sim_tap_drive(slave, action->drive_amplitude, action->drive_frequency) : NT_OK;
     if (driven != NT_OK)
         return driven;
     nt_sim_link *link = &slave->link;

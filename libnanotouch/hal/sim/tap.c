@@ -35,10 +35,9 @@ static double swing(const nt_sim_tap *tap)
     return hypotenuse(tap->flow.real, tap->flow.imaginary);
 }
 
-int nt_sim_taps(const nt_sim_slave *slave)
+int nt_sim_tap_swings(const nt_sim_tap *tap)
 {
-    const nt_sim_tap *tap = &slave->tap;
-    return tap->is_there && (tap->lever.strength > 0.0 || swing(tap) > AT_REST * tap->lever.free_amplitude);
+    return tap->lever.strength > 0.0 || swing(tap) > AT_REST * tap->lever.free_amplitude;
 }
 
 /* Another frequency is another lever. */
@@ -58,8 +57,6 @@ static nt_status tune(nt_sim_slave *slave, double frequency)
 nt_status nt_sim_tap_drive(nt_sim_slave *slave, double amplitude, double frequency)
 {
     nt_sim_tap *tap = &slave->tap;
-    if (!tap->is_there)
-        return NT_OK;
     if (!isfinite(amplitude) || !isfinite(frequency))
         return NT_E_NOT_FINITE;
     if (amplitude < 0.0 || amplitude > tap->lock_in.sensor.range)
@@ -119,10 +116,6 @@ void nt_sim_tap_read(nt_sim_slave *slave, nt_reading *reading)
 {
     nt_sim_tap *tap = &slave->tap;
     double seen[2];
-    if (!tap->is_there) {
-        reading->amplitude = reading->lag = NAN;
-        return;
-    }
     nt_sim_moment_before(&slave->link, tap->moments, seen);
     const double amplitude =
         nt_sensor_read(&tap->lock_in.sensor, seen[0], nt_sim_noise_now(&slave->link, NT_SIM_NOISE_LOCK_IN));
