@@ -6,5 +6,6 @@ from typing import Any
 Tapping: Any
 Flow: Any
 Scanner: Any
+ScanProgress: Any
 Steady: Any
 steady_line: Any

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // scan.h, flow.h: a raster with its z loop, and the slow flow of amplitude and lag
+#include <atomic>
+
 #include "descriptions.h"
 
 namespace
@@ -13,6 +15,12 @@ struct Flow {
 
 // real, imaginary, mean, attached
 using FlowState = std::tuple<double, double, double, bool>;
+
+// Of a strip: lines that are finished, and whether it is to end.
+struct Progress {
+    std::atomic<long> lines{0};
+    std::atomic<bool> ends{false};
+};
 
 constexpr py::ssize_t channels = 6; // of nt_scan_row
 
@@ -80,14 +88,16 @@ static nt_scan_row row_of(double *at, long pixels)
     return {at, at + pixels, at + 2 * pixels, at + 3 * pixels, at + 4 * pixels, at + 5 * pixels};
 }
 
-// Lines from one engagement: (lines, 2, channels, pixels), there and back, in the order of nt_scan_row. It begins a
-// line earlier, which is not kept: which of two motions the lever taps with is that of the surface, not of the coming
-// down.
-static py::array_t<double> strip(const nt_scanner &self, long first, long count, uint64_t seed)
+// Lines from one engagement into `out`, (lines, 2, channels, pixels), there and back, in the order of nt_scan_row. It
+// begins a line earlier, which is not kept: which of two motions the lever taps with is that of the surface, not of the
+// coming down. It ends after the line in hand when it is asked to.
+static void strip(const nt_scanner &self, long first, uint64_t seed, py::array_t<double, py::array::c_style> out,
+                  Progress &progress)
 {
     const long pixels = static_cast<long>(self.scan.raster.pixels);
-    py::array_t<double> out(
-        {static_cast<py::ssize_t>(count), py::ssize_t{2}, channels, static_cast<py::ssize_t>(pixels)});
+    if (out.ndim() != 4 || out.shape(1) != 2 || out.shape(2) != channels || out.shape(3) != pixels)
+        throw py::value_error("strip: out is not (lines, 2, 6, pixels)");
+    const long count = static_cast<long>(out.shape(0));
     double *at = out.mutable_data();
     nt_status status;
     {
@@ -97,13 +107,14 @@ static py::array_t<double> strip(const nt_scanner &self, long first, long count,
         status = nt_scanner_engage(&self, &state, first > 0 ? first - 1 : 0, seed);
         if (status == NT_OK && first > 0)
             status = nt_scanner_line(&self, &state, first - 1, &lost, &lost);
-        for (long line = first; line < first + count && status == NT_OK; ++line, at += 2 * channels * pixels) {
+        for (long line = first; line < first + count && status == NT_OK && !progress.ends;
+             ++line, at += 2 * channels * pixels) {
             nt_scan_row trace = row_of(at, pixels), retrace = row_of(at + channels * pixels, pixels);
             status = nt_scanner_line(&self, &state, line, &trace, &retrace);
+            progress.lines += status == NT_OK;
         }
     }
     raise_on(status, "scan");
-    return out;
 }
 
 void bind_scan(py::module_ &module)
@@ -114,10 +125,15 @@ void bind_scan(py::module_ &module)
         .def("go_on", [](const Flow &self, const FlowState &state, double x, double y, double z, double time) {
             return go_on(self, state, {x, y, z}, time);
         });
+    py::class_<Progress>(module, "ScanProgress")
+        .def(py::init<>())
+        .def_property_readonly("lines", [](const Progress &self) { return self.lines.load(); })
+        .def("end", [](Progress &self) { self.ends = true; });
     py::class_<nt_scanner>(module, "Scanner")
         .def(py::init(&make_scanner), py::arg("scan"), py::arg("rig"), py::arg("drive"), py::arg("plan"),
              py::keep_alive<1, 5>())
-        .def("strip", &strip, py::arg("first"), py::arg("count"), py::arg("seed"))
+        .def("strip", &strip, py::arg("first"), py::arg("seed"), py::arg("out").noconvert(),
+             py::arg("progress"))
         .def("peak_bound",
              [](const nt_scanner &self, double x, double y, double rise, double height) {
                  const nt_place place = nt_interaction_place(self.plan, x, y);

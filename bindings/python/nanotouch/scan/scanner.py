@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -132,7 +132,8 @@ def _each(
     While one is awaited ``waits`` is asked, with how many were told, and may end it likewise. What the compiled code
     has in hand then is not waited for: it may take a minute."""
     found: dict[int, Result | BaseException] = {}
-    todo, arrived, left = iter(items), threading.Condition(), []
+    left: list[bool] = []
+    todo, arrived = iter(items), threading.Condition()
 
     def labor() -> None:
         while not left:
@@ -169,6 +170,12 @@ def _has(found: Mapping[int, Any], number: int, arrived: threading.Condition) ->
     """Whether it has arrived, after a short wait."""
     with arrived:
         return arrived.wait_for(lambda: number in found, ASKED_EVERY)
+
+
+def _whole(lines: Sequence[int]) -> int:
+    """Lines from the first one on, of so many in each strip."""
+    whole = next((number for number, count in enumerate(lines) if count < STRIP), len(lines))
+    return STRIP * whole + sum(lines[whole : whole + 1])
 
 
 class Scanner(Lever):
@@ -259,17 +266,23 @@ class Scanner(Lever):
             By default one for each core. The image is the same on any number.
         """
         lines, pixels = (int(self.scan[f"raster.{name}"]) for name in ("lines", "pixels"))
-        out = np.empty((2, 6, lines, pixels))
         starts = range(0, lines, STRIP)
+        parts = [np.empty((min(STRIP, lines - first), 2, 6, pixels)) for first in starts]
+        states = [_core.ScanProgress() for _ in starts]
 
-        def strip(first: int) -> None:
-            count = min(STRIP, lines - first)
-            out[:, :, first : first + count] = self._core.strip(first, count, seed).transpose(1, 2, 0, 3)
+        def strip(number: int) -> None:
+            self._core.strip(starts[number], seed, parts[number], states[number])
 
-        def waits(done: int) -> bool | None:
-            return None if progress is None else progress(done / len(starts))
+        def waits(_: int) -> bool | None:
+            return None if progress is None else progress(sum(state.lines for state in states) / lines)
 
-        return self._image(out[:, :, : STRIP * _each(strip, starts, lambda done, _: waits(done + 1), waits, threads)])
+        try:
+            _each(strip, range(len(starts)), lambda done, _: waits(done), waits, threads)
+            done = _whole([state.lines for state in states])
+        finally:
+            for state in states:
+                state.end()
+        return self._image(np.concatenate(parts)[:done].transpose(1, 2, 0, 3))
 
     def steady(
         self,
