@@ -44,7 +44,7 @@ def rig(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> type[Ranged]:
     (tmp_path / "rig.toml").write_text(text + "\n[medium]\nrelative_humidity_percent = 0\n")
     monkeypatch.chdir(tmp_path)
 
-    def halves(_: Any) -> dict[str, Any]:
+    def halves(_name: str | None, _allow_code: bool) -> dict[str, Any]:
         return {"slave": Ranged()}
 
     monkeypatch.setattr(scenes, "real_halves", halves)

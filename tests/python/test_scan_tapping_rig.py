@@ -207,7 +207,7 @@ def device(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> type[Stairs]:
     """The rig file of the docs, whose slave is played by a device in Python."""
     (tmp_path / "rig.toml").write_text(FILE.read_text() + "\n[medium]\nrelative_humidity_percent = 0\n")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(scenes, "real_halves", lambda _: {"slave": Stairs()})
+    monkeypatch.setattr(scenes, "real_halves", lambda *_: {"slave": Stairs()})
     monkeypatch.setattr(Stairs, "gain", 1.0)
     return Stairs
 
