@@ -112,7 +112,7 @@ static void loci_at(const axes *of, double J[2][2], double theta, double complex
                              (nt_sampled_servo(&of->z, &terms) * nt_sampled_air(&terms, of->force_gain));
     const double complex X = -open_loop(&of->side.master, of->periods, theta);
     const double complex half = 0.5 * (X * J[0][0] + G * J[1][1]);
-    const double complex root = csqrt(half * half - X * G * (J[0][0] * J[1][1] - J[0][1] * J[1][0]));
+    const double complex root = nt_complex_root(half * half - X * G * (J[0][0] * J[1][1] - J[0][1] * J[1][0]));
     found[0] = half + root;
     found[1] = half - root;
 }

@@ -152,9 +152,8 @@ static void turn(ride *r)
                 : 0.0;
 }
 
-static void befall(ride *r, enum event event, nt_sample *s)
+static void spoil_channel(enum event event, nt_sample *s)
 {
-    const double old = 3.0 * larger(r->touch.period, r->touch.supervisor.master_period);
     switch (event) {
     case MASTER_NAN:
         s->master_position[NT_Z] = NAN;
@@ -177,6 +176,15 @@ static void befall(ride *r, enum event event, nt_sample *s)
     case STAGE_X_NAN:
         s->stage_position[NT_X] = NAN;
         break;
+    default:
+        break;
+    }
+}
+
+static void befall(ride *r, enum event event, nt_sample *s)
+{
+    const double old = 3.0 * larger(r->touch.period, r->touch.supervisor.master_period);
+    switch (event) {
     case BAD_FRAME:
         s->flags = NT_SAMPLE_INVALID;
         break;
@@ -213,6 +221,7 @@ static void befall(ride *r, enum event event, nt_sample *s)
         s->lateness = 2.0 * r->touch.period;
         break;
     default:
+        spoil_channel(event, s);
         break;
     }
 }

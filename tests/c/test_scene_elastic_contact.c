@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "larger.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 
@@ -58,18 +59,18 @@ static double contradiction(const nt_scene *scene, nt_quantity quantity, const d
 {
     for (int i = 0; i < 2; ++i)
         make(&plans[i], scene, quantity, demands[i]);
-    const double away = fmax(plans[0].fold_distance, plans[1].fold_distance);
-    const double fold = fmin(plans[0].release_gap, plans[1].release_gap);
+    const double away = larger(plans[0].fold_distance, plans[1].fold_distance);
+    const double fold = smaller(plans[0].release_gap, plans[1].release_gap);
     double worst = 0.0;
     for (double q = 1.0001; fold - q * away > -plans[0].largest_indentation; q *= 1.05) {
         const double gap = fold - q * away;
         if (touches_beside(gap, away))
             continue;
         const double one = value_at(&plans[0], gap), other = value_at(&plans[1], gap);
-        const double size = fmax(fabs(one), fabs(other));
-        const double allowed = plans[0].bound.force_error * fmax(size, plans[0].scale) +
-                               plans[1].bound.force_error * fmax(size, plans[1].scale);
-        worst = fmax(worst, fabs(one - other) / allowed);
+        const double size = larger(fabs(one), fabs(other));
+        const double allowed = plans[0].bound.force_error * larger(size, plans[0].scale) +
+                               plans[1].bound.force_error * larger(size, plans[1].scale);
+        worst = larger(worst, fabs(one - other) / allowed);
     }
     return worst;
 }

@@ -121,7 +121,7 @@ static double atoms_apart(const nt_scene *scene)
     const nt_adhesion *adhesion = &scene->adhesion;
     const double all = sqrt(adhesion->hamaker_constant / (12.0 * NT_PI * adhesion->work_of_adhesion));
     const int round = scene->tip.shape != NT_SHAPE_CONE && scene->tip.shape != NT_SHAPE_PUNCH;
-    return plan.source == NT_ADHESION_SOLID && round ? fmax(adhesion->equilibrium_distance, all)
+    return plan.source == NT_ADHESION_SOLID && round ? larger(adhesion->equilibrium_distance, all)
                                                      : adhesion->equilibrium_distance;
 }
 

@@ -161,7 +161,7 @@ def _difference(plans: list[Any], gaps: np.ndarray, quantity: str, load: float) 
         allowed = allowed + _ROUNDING * np.maximum(np.abs(one), np.abs(other))
         with np.errstate(invalid="ignore", divide="ignore"):
             ratio = np.where(one == other, 0.0, np.abs(one - other) / allowed)
-        worst = max(worst, float(np.max(ratio[within], initial=0.0)))
+        worst = float(np.maximum(worst, np.max(ratio[within], initial=0.0)))
     return worst
 
 
@@ -171,11 +171,12 @@ def _folds(plans: list[Any]) -> float:
         return 0.0
     allowed = sum(plan.fold_shift_m for plan in plans)
     if plans[0].quantity == "folds":
-        allowed = min(allowed, sum(plan.bound * plan.scale for plan in plans))
+        allowed = np.minimum(allowed, sum(plan.bound * plan.scale for plan in plans))
     worst = 0.0
     for which in ("capture_gap", "release_gap"):
         one, other = (plan.explain()[which] for plan in plans)
-        worst = max(worst, abs(one - other) / (allowed + 1e-9 * max(abs(one), abs(other), 1e-12)))
+        size = np.maximum(np.maximum(abs(one), abs(other)), 1e-12)
+        worst = float(np.maximum(worst, abs(one - other) / (allowed + 1e-9 * size)))
     return worst
 
 

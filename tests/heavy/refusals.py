@@ -42,7 +42,7 @@ def main() -> int:
         for i, demand in enumerate(DEMANDS):
             words, seconds = refusal(scene.tables, demand)
             refused[i] += bool(words)
-            slowest = max(slowest, seconds)
+            slowest = float(np.maximum(slowest, seconds))
             if words and demand == 1e-2:
                 print(f"  {scene.name}: {words[:160]}")
     print(f"refused of {len(ORDINARY)} at {DEMANDS}: {refused.tolist()}; slowest answer {slowest:.2f} s")

@@ -61,7 +61,7 @@ def check(before: float, after: NDArray[np.float64], rig: nt.Rig, settings: nt.S
     assert steps.max() <= settings.limits.motor_rate / settings.gains.rate * (1.0 + 1e-9)
     v, m, w = rig.master.max_speed, min(0.1, rig.master.mass), 1e-3
     time = min(0.05, 2.0 * w / (abs(before) * 0.5 * (v + math.sqrt(v * v + 2.0 * w / m)))) if before else 0.05
-    time = max(time, abs(before) / settings.limits.motor_rate)
+    time = np.maximum(time, abs(before) / settings.limits.motor_rate)
     assert not after[math.ceil(time * settings.gains.rate) :].any()
 
 

@@ -327,6 +327,26 @@ static py::dict described_half(const Session &self, int half)
                     py::arg("channels") = channels);
 }
 
+// How it runs and why it stands still.
+static void bind_state(py::class_<Session> &type)
+{
+    type.def_property_readonly("pace",
+                               [](const Session &self) { return static_cast<int>(nt_session_pace(self.handle)); })
+        .def_property_readonly("wall_pace",
+                               [](const Session &self) {
+                                   const nt_wall_pace wall = nt_session_wall_pace(self.handle);
+                                   return py::make_tuple(wall.hold, wall.latency, wall.margin.margin);
+                               })
+        .def_property_readonly("since", [](const Session &self) { return nt_session_touch_state(self.handle)->since; })
+        .def_property_readonly("reasons",
+                               [](const Session &self) { return nt_session_touch_state(self.handle)->command.reasons; })
+        .def_property_readonly(
+            "state",
+            [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->supervisor.state); })
+        .def_property_readonly(
+            "phase", [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->phase); });
+}
+
 void bind_session_run(py::module_ &module, py::class_<Session> &type)
 {
     bind_frame(module);
@@ -367,26 +387,12 @@ void bind_session_run(py::module_ &module, py::class_<Session> &type)
                                        "and since the last change");
                  raise_on(status, problem, "rewind");
              })
-        .def_property_readonly("pace",
-                               [](const Session &self) { return static_cast<int>(nt_session_pace(self.handle)); })
-        .def_property_readonly("wall_pace",
-                               [](const Session &self) {
-                                   const nt_wall_pace wall = nt_session_wall_pace(self.handle);
-                                   return py::make_tuple(wall.hold, wall.latency, wall.margin.margin);
-                               })
-        .def_property_readonly("since", [](const Session &self) { return nt_session_touch_state(self.handle)->since; })
-        .def_property_readonly("reasons",
-                               [](const Session &self) { return nt_session_touch_state(self.handle)->command.reasons; })
-        .def_property_readonly(
-            "state",
-            [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->supervisor.state); })
         .def("restore",
              [](Session &self, const Snapshot &kept) {
                  nt_problem problem{};
                  const nt_status status =
                      alone(self, [&](nt_session *h) { return nt_session_restore(h, kept.handle, &problem); });
                  raise_on(status, problem, "restore: the snapshot was taken with another setup");
-             })
-        .def_property_readonly(
-            "phase", [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->phase); });
+             });
+    bind_state(type);
 }

@@ -163,8 +163,8 @@ typedef struct nt_plan {
     double pull_off_force;         /* and wherever it is: what a load must overcome to come free, positive [N] */
     double largest_pull_off_force; /* the same over all places of the surface [N] */
     int visits_contact;         /* 0: no gap of the scene's range comes to contact. Then, at those gaps on rigid ... */
-    double visited_pull;        /* ... bodies: the strongest pull, */
-    double visited_push;        /* ... push, [N] */
+    double visited_pull;        /* ... bodies: the strongest pull [N], */
+    double visited_push;        /* ... push [N], */
     double visited_stiffness;   /* ... and |k| [N/m]; 0 where there is contact */
     double minimum_spring;      /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
     double maximum_stiffness;   /* k of the contact at the largest load [N/m] */
