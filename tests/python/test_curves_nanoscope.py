@@ -121,6 +121,7 @@ def test_a_force_volume_says_how_large_it_is(tmp_path: Path, scan: str, size: fl
         (b"DeflSens: V 40.00000 nm/V", b"DeflSens: V 0.000000 nm/V", "sensitivity 0 m/V, expected"),
         (b"Zsens: V 12.18000 nm/V", b"Zsens: V 12180000 um/V", "the base travels"),
         (b"Spring Constant: 0.999", b"Spring Constant: -0.99", "expected a positive number"),
+        (b"Spring Constant: 0.999", b"Spring Constant: 0.9 V", "expected a positive number"),
         (b"Forward vel.: 9", b"Forward vel.: x", "expected a positive number"),
         (b":Ramp size: V", b":Ramp siez: V", "lacks ':Ramp size'"),
         (b"DeflSens: V 40.00000 nm/V", b"DeflSens: V 1.000000     ", "no sensitivity 'DeflSens'"),
@@ -163,6 +164,12 @@ def rewritten(path: Path, *changes: tuple[str, str]) -> Path:
     header, data = content.split(b"\x1a", 1)
     path.write_bytes((header + b"\x1a").ljust(4096, b"\0") + data[before:])
     return path
+
+
+@pytest.mark.parametrize(("stated", "value"), [("133.2 mN/m", 0.1332), ("133.2 pN/nm", 0.1332), ("0.1332 N/m", 0.1332)])
+def test_a_unit_of_the_spring_constant_counts(tmp_path: Path, stated: str, value: float) -> None:
+    path = rewritten(ramp(tmp_path / "a.000"), ("Spring Constant: 0.999", f"Spring Constant: {stated}"))
+    assert curves.read(path)[0].meta["spring constant"] == pytest.approx(value, rel=1e-12)
 
 
 def test_version_9_writes_other_capitals_and_leaves_the_unit_out(tmp_path: Path) -> None:

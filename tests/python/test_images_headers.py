@@ -103,3 +103,30 @@ def test_a_wrong_check_sum_is_refused(tmp_path: Path) -> None:
     path.write_bytes(re.sub(rb"(?s)(?<=.{200})\x00", b"\x01", content, count=1))
     with pytest.raises(ReadError, match="check sum of its header is wrong"):
         images.read(path)
+
+
+@pytest.mark.parametrize("unit", [b"nm", b"\xb5m", b"\xc2\xb5m", b"\x83\xcam", b"\xc5", b"\xc3\x85"])
+def test_lines_of_one_wsxm_header_may_differ_in_encoding(tmp_path: Path, unit: bytes) -> None:
+    path = wsxm(tmp_path / "image")
+    expected = images.read(path).pixel_size
+    content = path.read_bytes()
+    scale = {b"n": 1.0, b"\xc5": 10.0, b"\xc3": 10.0}.get(unit[:1], 1e-3)
+    number = re.search(rb"X Amplitude: ([0-9.]+) nm", content)
+    assert number
+    content = content.replace(number[0], b"X Amplitude: %.9g %s" % (float(number[1]) * scale, unit))
+    path.write_bytes(content.replace(b"[Control]", b"[Environment]\r\n    Temperature: 0 \xbaC\r\n[Control]", 1))
+    assert images.read(path).pixel_size == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (rb"Number of rows: \d+", b"Number of rows: 8", "8 rows and 32 columns .* make"),
+        (rb"( *X Amplitude: )(\d+)", rb"\g<0> nm\r\n\g<1>7", "'X Amplitude' is stated as '.*' and as '7 nm'"),
+    ],
+)
+def test_a_wsxm_header_that_contradicts_itself_is_refused(tmp_path: Path, old: bytes, new: bytes, message: str) -> None:
+    path = wsxm(tmp_path / "image")
+    path.write_bytes(re.sub(old, new, path.read_bytes(), count=1))
+    with pytest.raises(ReadError, match=message):
+        images.read(path)

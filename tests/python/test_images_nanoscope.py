@@ -237,3 +237,19 @@ def test_an_ordinary_file_is_read_as_surface_topography_does(tmp_path: Path) -> 
     ours = images.read(path)
     np.testing.assert_allclose(ours.heights, theirs.heights().T[::-1] * 1e-9, rtol=1e-9)
     assert ours.size == pytest.approx([side * 1e-9 for side in theirs.physical_sizes[::-1]])
+
+
+def test_two_values_of_one_scale_are_refused(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.spm", picture(), scan=("@Sens. Other: V 1.0 nm/V", "@Sens. Other: V 2.0 nm/V"))
+    with pytest.raises(ReadError, match=r"'@Sens\. Other' is stated as 'V 1\.0 nm/V' and as 'V 2\.0 nm/V'"):
+        images.read(path)
+    again = write(tmp_path / "b.spm", picture(), scan=("Note: one", "Note: two", "Scan Size: 8000 nm"))
+    np.testing.assert_array_equal(images.read(again).heights, images.read(write(tmp_path / "c.spm", picture())).heights)
+
+
+@pytest.mark.parametrize("number", ["790,3658", "1,790.5", "12.5,"])
+def test_a_sensitivity_that_is_no_number_is_named(tmp_path: Path, number: str) -> None:
+    path = write(tmp_path / "a.spm", picture())
+    path.write_bytes(path.read_bytes().replace(f"V {SENSITIVITY} nm/V".encode(), f"V {number} nm/V".encode()))
+    with pytest.raises(ReadError, match=r"does not say what 'Sens\. Zsens' is"):
+        images.read(path)

@@ -23,6 +23,13 @@ _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
 _SCALED = re.compile(rf"V\s*\[Sens\. ([^\]]+)\]\s*\({_NUMBER}\s*(m?V)/LSB\)\s*{_NUMBER}\s*(m?V)")
 _SIZE = re.compile(rf"{_NUMBER}(?:\s+{_NUMBER})?\s+(nm|um|pm|mm|m)")
 _SENSITIVITY = re.compile(rf"V {_NUMBER}\s*(\S*)")
+_STIFFNESS = re.compile(rf"{_NUMBER}\s*([munp]?N/m|[munp]N/[num]m)?")
+_PREFIX = {"": 1.0, "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12}
+# What decides size and scale, so that two values of it in one section leave neither to be believed
+_DECIDES = re.compile(
+    r"@sens\. .*|scan size|aspect ratio|samps/line|number of lines|bytes/pixel|data (offset|length)|spring constant"
+    r"|@.*:(z scale|ramp size)"
+)
 
 
 class Section(dict[str, str]):
@@ -55,6 +62,16 @@ class Section(dict[str, str]):
         if not 0.0 < value < math.inf:
             raise ReadError(f"{self.file}: {key!r} is {self.text(key)!r}, expected a positive number")
         return value
+
+    def spring_constant(self) -> float:
+        """In N/m, which is meant where no unit is stated."""
+        text = self.text("Spring Constant")
+        match = _STIFFNESS.fullmatch(plain_unit(text))
+        value = float(match[1]) if match else math.nan
+        if match is None or not 0.0 < value < math.inf:
+            raise ReadError(f"{self.file}: 'Spring Constant' is {text!r}, expected a positive number [N/m]")
+        newton, _, metre = (match[2] or "N/m").partition("/")
+        return value * _PREFIX[newton[:-1]] / _PREFIX[metre[:-1]]
 
     def scaled(self, ending: str) -> tuple[str, float, float] | None:
         """Of the value whose key ends so: name of its sensitivity, V per LSB, V; None if there is none."""
@@ -100,8 +117,15 @@ def parsed(file: Path, lines: Iterable[str]) -> list[Section]:
         elif line.startswith("\\") and found:
             # A colon also stands in the name of a parameter: "@4:Z scale: V ..."
             key, _, value = line[1:].partition(": ")
-            found[-1].setdefault(key.strip().rstrip(":").lower(), value.strip())
+            _state(found[-1], key.strip().rstrip(":"), value.strip())
     return found
+
+
+def _state(one: Section, key: str, value: str) -> None:
+    """The first statement counts; of what decides a scale, all of one section must agree."""
+    known = one.setdefault(key.lower(), value)
+    if known != value and _DECIDES.fullmatch(key.lower()):
+        raise ReadError(f"{one.file}: {key!r} is stated as {known!r} and as {value!r} in {one.name!r}")
 
 
 def section(found: list[Section], name: str) -> Section:

@@ -108,7 +108,7 @@ def _meta(found: list[Section], image: Section, given: Calibration) -> tuple[dic
     if known is None and given.sensitivity is None:
         raise ReadError(f"{first.file}: its header states no sensitivity {name!r} in metres per volt; give it")
     sensitivity, note = (given.sensitivity, "") if known is None else known
-    stiffness = image.positive("Spring Constant") if "spring constant" in image else given.spring_constant
+    stiffness = image.spring_constant() if "spring constant" in image else given.spring_constant
     meta = {
         "format": "Bruker NanoScope",
         "sensitivity": sensitivity,
@@ -243,6 +243,8 @@ def _ramp(found: list[Section], image: Section, near: int, far: int) -> _Way | N
         return None
     settings = header.section(found, "Ciao force list")
     name, _, volts = stated
+    if not volts > 0.0:
+        raise ReadError(f"{image.file}: a ramp of {volts:g} V in {image.name!r}, expected a positive one")
     size = volts * header.piezo(found, name)
     z = np.concatenate([np.arange(near)[::-1], np.arange(far)]) * (size / far)
     durations = [volts / settings.positive(key) for key in ("Forward vel.", "Reverse vel.")]

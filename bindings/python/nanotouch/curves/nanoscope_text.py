@@ -76,7 +76,7 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
 
 def _stated(sections: list[header.Section], given: Calibration) -> tuple[float | None, float | None]:
     """Spring constant and sensitivity: of the header, else what is given."""
-    stiffness = next((one.positive("Spring Constant") for one in sections if "spring constant" in one), None)
+    stiffness = next((one.spring_constant() for one in sections if "spring constant" in one), None)
     known = header.sensitivity(sections, "DeflSens") if sections else None
     return stiffness or given.spring_constant, known[0] if known else given.sensitivity
 

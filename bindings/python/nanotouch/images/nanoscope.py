@@ -30,7 +30,7 @@ _IMAGE_LISTS = ("ciao image list", "afm image list", "stm image list", "ncafm im
 _SCALE = re.compile(
     r"V\s*(?:\[(?P<soft>[^\]]*)\])?\s*(?:\([^)]*(?:\([^)]*\)[^)]*)*\)?)?\s*(?P<number>[-+0-9.eE]+)\s*(?P<unit>.*)"
 )
-_SENSITIVITY = re.compile(r"V\s*(?P<number>[-+0-9.eE]+)\s*(?P<unit>.*)")
+_SENSITIVITY = re.compile(r"V\s*(?P<number>[-+0-9.eE]+)\s*(?P<unit>(?![0-9,.]).*)")
 _VOLTS = {"V": 1.0, "mV": 1e-3, "uV": 1e-6, "µV": 1e-6}
 _WITHOUT_UNIT = ("Arb", "log(Arb)")
 

@@ -2,7 +2,7 @@
 """WSxM images, ``.stp`` and ``.top``: sections of a text header, then numbers, little-endian.
 
 The first number is the lower right corner. Floats and doubles are in the unit of ``Z Amplitude``; integers, which an
-older header does not name, span it. The text is in the encoding of the computer: units are read in UTF-8, else latin-1.
+older header does not name, span it. The text is in the encoding of the computer: each line is UTF-8, else latin-1.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ _KIND = b"SxM Image file"
 _END = re.compile(rb"\[Header end\]\r?\n")
 _STORED = {"short": "<i2", "integer": "<i2", "float": "<f4", "double": "<f8"}
 _QUANTITY = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(\S*)")
+_DECIDES = ("X Amplitude", "Y Amplitude", "Z Amplitude", "Number of rows", "Number of columns", "Image Data Type")
 _DIFFER = 0.01  # amplitude and range of the heights, above which it is told
 
 
@@ -55,6 +56,9 @@ def read(file: Path, channel: str | None) -> Plane:
     held, needed = file.stat().st_size - header.start, ny * nx * np.dtype(kind).itemsize
     if held < needed:
         raise ReadError(f"{file}: {held} bytes of data, but its header states {needed}: it is cut off or damaged")
+    if held - needed >= nx * np.dtype(kind).itemsize:
+        told = f"{ny} rows and {nx} columns of the Image Data Type (by default: short) make {needed}"
+        raise ReadError(f"{file}: {held} bytes of data, but in its header {told}: one of them is wrong")
     raw = np.fromfile(file, kind, ny * nx, offset=header.start).reshape(ny, nx)
     values, notes = _scaled(file, header, np.asarray(raw[:, ::-1], np.float64), integers="i" in kind)
     if header.stated not in (None, header.start):
@@ -109,21 +113,27 @@ def _header(file: Path) -> _Header:
     end = _END.search(content)
     if end is None:
         raise ReadError(f"{file}: its header does not end with [Header end]")
-    raw = content[: end.start()]
-    try:
-        text = raw.decode("utf-8")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
     sections: dict[str, dict[str, str]] = {}
     facts: dict[str, str] = {}
-    for line in text.splitlines():
+    for raw in content[: end.start()].splitlines():
+        line = _text(raw)
         if line.startswith("[") and line.rstrip().endswith("]"):
             facts = sections.setdefault(line.strip()[1:-1], {})
         elif ":" in line:
             key, _, value = line.partition(":")
-            facts.setdefault(key.strip(), value.strip())
+            known = facts.setdefault(key.strip(), value.strip())
+            if known != value.strip() and key.strip() in _DECIDES:
+                raise ReadError(f"{file}: {key.strip()!r} is stated as {known!r} and as {value.strip()!r}")
     stated = re.search(rb"Image header size:\s*(\d+)", content[:200])
     return _Header(sections, end.end(), int(stated[1]) if stated else None)
+
+
+def _text(line: bytes) -> str:
+    """A program that saves a file again may write another encoding than the one before: each line has its own."""
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError:
+        return line.decode("latin-1").replace("\x83\xca", "µ")  # Shift-JIS's mu
 
 
 def _quantity(text: str) -> tuple[float, str] | None:
