@@ -96,8 +96,7 @@ def test_python_classes_keep_the_contract() -> None:
     assert seen.readings == 50
     assert seen.oldest == pytest.approx(7e-3)
     life = ["open", "configure", "arm", "disarm", "close"]
-    assert mouse.calls == ["open", "close", *life, *life]
-    assert mouse.configuration == (1e-3, 1e-6, "")
+    assert (mouse.calls, mouse.configuration) == (["open", "close", *life, *life], (1e-3, 1e-6, ""))
     assert len(mouse.actions) == 400
     assert all(action.target == (0.0, 0.0, 0.0) and action.state == "RUN" for action in mouse.actions)
     with pytest.raises(ValueError, match="closed"):
