@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Written by nanotouch 0.1.0: do not edit. Needs nanotouch_single.h and .c (tools/single.py).
  *
- * w37b_plan_force: the force over the gap, 31 pieces. It is within 0.001 of max(|F|, 18 nN) of the plan's
+ * plan_force: the force over the gap, 31 pieces. It is within 0.001 of max(|F|, 18 nN) of the plan's
  * where the gap is 0 m or more from a fold, a jump and first touch. The plan's own bound is below.
  * w37b_plan_touch: the touch step in the mode "approach", 10000 steps in a second.
  *
@@ -53,7 +53,7 @@ static const ntf_force_piece w37b_plan_pieces[31] = {
     {2.32832731e-09f, 2.80781728e+08f, {-5.21449377e-11f, 1.46906168e-10f, -1.74855033e-10f, 7.11056422e-11f}},
 };
 
-static const ntf_force_table w37b_plan_force = {
+static const ntf_force_table plan_force = {
     w37b_plan_pieces,
     28, /* contact */
     3, /* apart */

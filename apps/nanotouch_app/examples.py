@@ -59,7 +59,7 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
     "latency": (("nanotouch latency --seconds 1", "how late this machine wakes a loop of 1 kHz up"),),
     "rig": (
         ("nanotouch rig check rig.toml", "is a rig file whole? nothing is moved"),
-        ("nanotouch rig allow rig.toml", "let it load the shared object that it names"),
+        ("nanotouch rig allow --help", "let a rig file load the shared object that it names"),
     ),
     "doctor": (("nanotouch doctor", "what is installed, and what to install for the rest"),),
 }

@@ -41,6 +41,7 @@ def test_a_touch_is_felt_once_more(touched: nt.Recording) -> None:
         assert np.array_equal(getattr(felt, name), getattr(touched, name)), name
 
 
+@pytest.mark.filterwarnings("ignore:the session was stopped")
 def test_after_the_last_row_it_holds(touched: nt.Recording) -> None:
     over = again(touched[:5000])
     assert not over.state[:5000].any()

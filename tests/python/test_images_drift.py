@@ -126,9 +126,9 @@ def test_a_spike_among_disturbed_pixels_goes() -> None:
     assert clean.height_range < 60 * NM
 
 
-@pytest.mark.parametrize(("name", "most"), [("sample_0.stp", 0.15), ("sample_0.jpk-qi-image", 9.0), ("nid-1.nid", 3.4)])
+@pytest.mark.parametrize(("name", "most"), [("sample_0.stp", 0.15), ("sample_0.jpk-qi-image", 9.0), ("nid-1.nid", 4.4)])
 def test_real_images(name: str, most: float) -> None:
-    """Banded by 5.4, 17 and 7.3 nm by plane and rows alone."""
+    """Banded by 5.4, 17 and 7.3 nm by plane and rows alone; the third is of its height sensor, which is noisier."""
     path: Path = synthetic.DATA / "corpus" / "images" / name
     if not path.exists():
         pytest.skip(f"real data not here: {path}")

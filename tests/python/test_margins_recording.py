@@ -13,6 +13,7 @@ from nanotouch import margins
 from nanotouch._core import Signals
 
 
+@pytest.mark.filterwarnings("ignore:the session was stopped")
 def test_recording_with_a_dead_sensor() -> None:
     faults = nt.Faults().add("nan", "deflection", at=0.5, duration=1e-3)
     recording = nt.Session(faults=faults).run(2.0)
