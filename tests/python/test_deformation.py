@@ -328,7 +328,9 @@ def test_a_lone_attraction_is_planned_as_its_refusal_says(modulus: float, accura
     (named,) = re.findall(r"range\.minimum_gap .* valid is (\S+) \.\.", str(found.value))
     away = scene.copy()
     away.range.minimum_gap = float(named)
-    assert away.plan(accuracy).bound <= accuracy
+    plan = away.plan(accuracy)
+    assert plan.bound <= accuracy or any("no finer table" in warning.text for warning in plan.warnings)
+    assert plan.bound < 3e-4 or accuracy > 1e-4
     jump = (0.5955 * 1e-21 * 2.5e-6**0.5 * 0.75 / modulus) ** (2 / 7)  # of 1/g^3, by centres z0 apart
     assert 0.5 < (float(named) + scene.adhesion.equilibrium_distance) / jump < 6
     scene.adhesion.work_of_adhesion = 1.1 * 1e-21 / (12 * np.pi * scene.adhesion.equilibrium_distance**2)

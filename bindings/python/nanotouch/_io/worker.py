@@ -34,6 +34,7 @@ from nanotouch.errors import Error, InvalidValue, MissingExtra, ReadError
 Answer = TypeVar("Answer")
 
 _START_TIME = 120.0  # for the imports of another Python [s]
+_PUT_ASIDE = 1 << 24  # by a reader while it reads, such as SurfaceTopography of .xyz [B]
 _GRACE = 5.0  # after the child's own limit of time [s]
 
 
@@ -44,7 +45,7 @@ def ask(job: str, file: Path, options: dict[str, Any], expected: type[Answer], p
     limits = guard.LIMITS.of(file)
     request: dict[str, Any] = {"job": job, "file": str(file.absolute()), "options": options, "limits": asdict(limits)}
     kind = (get_args(expected) or (expected,))[0]
-    request["written"] = limits.memory if _is_archive(file) else 0  # what is unpacked; nothing else is ever written
+    request["written"] = limits.memory if _is_archive(file) else _PUT_ASIDE  # in the folder that is its own
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder, _lock:
         request["folder"] = folder
         try:
