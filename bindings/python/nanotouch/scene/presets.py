@@ -39,7 +39,7 @@ FELT: dict[str, str] = {
         "when 0.57 µN pull."
     ),
     "inas_dots": (
-        "Hills as hard as a wall of 408 N/m: the hand follows their heights, not their give, and the "
+        "Hills as hard as a wall of 420 N/m: the hand follows their heights, not their give, and the "
         "water lets go at 18 nN."
     ),
     "cell_in_liquid": (
@@ -144,7 +144,7 @@ def polystyrene_ball() -> tuple[Scene, Rig]:
 
 def inas_dots() -> tuple[Scene, Rig]:
     """Silicon tip on InAs quantum dots in humid air, for ``surface.dots()``."""
-    scene = Scene(tip={"yield_strength": 7e9}, sample={"material": "indium arsenide"}, range={"maximum_load": 0.3e-6})
+    scene = Scene(tip={"yield_strength": 7e9}, sample={"material": "indium arsenide"}, range={"maximum_load": 0.33e-6})
     return scene, Rig()
 
 
