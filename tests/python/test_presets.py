@@ -104,7 +104,7 @@ FACTS = {
     "polyester": Facts(0.195e-9, 444e-9, 374.6, 4.16e-9),
     "silicone_rubber": Facts(0.195e-9, 746.4e-9, 18.42, 144.1e-9),
     "polystyrene_ball": Facts(0.195e-9, 568e-9, 631.3, 3.873e-9),
-    "inas_dots": Facts(0.7e-9, 17.9e-9, 407.5, 1.148e-9),
+    "inas_dots": Facts(0.7e-9, 17.9e-9, 420.1, 1.220e-9),
 }
 
 
