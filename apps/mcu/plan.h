@@ -3,7 +3,7 @@
  *
  * plan_force: the force over the gap, 31 pieces. It is within 0.001 of max(|F|, 18 nN) of the plan's
  * where the gap is 0 m or more from a fold, a jump and first touch. The plan's own bound is below.
- * w37b_plan_touch: the touch step in the mode "approach", 10000 steps in a second.
+ * plan_touch: the touch step in the mode "approach", 10000 steps in a second.
  *
  * contact: Maugis-Dugdale table, lambda 0.0401; adhesion by a water meniscus, w = 140.9 mJ/m2 beside van der Waals;
  * Hertz would err by 86 %, DMT would err by 23 %, JKR would err by 26 %
@@ -19,7 +19,7 @@
 
 #include "nanotouch_single.h"
 
-static const ntf_force_piece w37b_plan_pieces[31] = {
+static const ntf_force_piece plan_pieces[31] = {
     {-9.29994082e-10f, 2.15055130e+09f, {3.99588487e-07f, -3.09100329e-07f, 3.73146136e-08f, 5.00933739e-09f}},
     {-4.64997041e-10f, 4.30110259e+09f, {1.32812090e-07f, -1.09721547e-07f, 1.31080142e-08f, 1.69512593e-09f}},
     {-2.32498520e-10f, 8.60220518e+09f, {3.78936846e-08f, -3.92100716e-08f, 4.56205962e-09f, 5.48926071e-10f}},
@@ -54,7 +54,7 @@ static const ntf_force_piece w37b_plan_pieces[31] = {
 };
 
 static const ntf_force_table plan_force = {
-    w37b_plan_pieces,
+    plan_pieces,
     28, /* contact */
     3, /* apart */
     6.99999947e-10f, /* capture_gap */
@@ -65,7 +65,7 @@ static const ntf_force_table plan_force = {
     0.00000000e+00f, /* fold_distance */
 };
 
-static const ntf_touch w37b_plan_touch = {
+static const ntf_touch plan_touch = {
     {
         {
             8.00000000e+00f, /* spring_constant */

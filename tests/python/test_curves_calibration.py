@@ -102,7 +102,7 @@ def test_a_table_corrects_many_files(tmp_path: Path) -> None:
         ("file,spring_constant\na,1N/m,3,4\n", "more fields than columns"),
         ("file,spring_constant\na,1\n", "row 1: '1' has no unit"),
         ("file,sensitivity\na,1N/m\n", "row 1: '1N/m' has the unit 'N/m'"),
-        ("file,sensitivity\na,40nm/V\nb,400km/V\n", "row 2: sensitivity: 400000.0 m/V, expected"),
+        ("file,sensitivity\na,40nm/V\nb,400000m/V\n", "row 2: sensitivity: 400000.0 m/V, expected"),
     ],
 )
 def test_a_table_with_a_mistake_is_refused(tmp_path: Path, text: str, message: str) -> None:

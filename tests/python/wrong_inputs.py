@@ -293,7 +293,7 @@ fit prose.txt --known-to correlation=-0.8 | 'correlation=-0.8' | as -80 for -0.8
 fit prose.txt --spring-constant 8   | --spring-constant: '8' has no unit | N/m
 fit prose.txt --spring-constant -8N/m | -8.0 N/m | 0.0001 .. 10000 N/m
 fit prose.txt --sensitivity 40nm    | the unit 'nm' | nm/V
-fit prose.txt --sensitivity 1m/V    | 1.0 m/V | 1e-10 .. 0.0001 m/V
+fit prose.txt --sensitivity 1m      | has the unit 'm'
 fit prose.txt --calibration nowhere | nowhere: no such file
 fit prose.txt --calibration words.csv | words.csv: columns a, b | file, spring_constant
 fit prose.txt --calibration nan.csv | nan.csv: row 1 | 'nan'
