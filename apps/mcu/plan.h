@@ -12,8 +12,8 @@
  * beside them on; cost 2 Hertz evaluations (1.9 where each waits for the last), everything exact 7
  * pull-off 17.98 nN; the force jumps in, whatever the spring; stiffest contact 665 N/m
  */
-#ifndef NANOTOUCH_CONSTANTS_W37B_PLAN_H
-#define NANOTOUCH_CONSTANTS_W37B_PLAN_H
+#ifndef NANOTOUCH_CONSTANTS_PLAN_H
+#define NANOTOUCH_CONSTANTS_PLAN_H
 
 #include <math.h>
 
