@@ -10,6 +10,7 @@ from nanotouch import margins, presets
 
 from nanotouch_app.studies.reproduce import paper, touching
 from nanotouch_app.studies.reproduce.statement import Parameter, Reproduction, Statement, holds, quantity
+from nanotouch_app.studies.reproduce.stopped import run
 
 LITERAL = Parameter("alpha_p, literal", 15e-9, "m/m", "Sec. VI-B, as printed")
 REPAIRED = Parameter("alpha_p, repaired", 15e-6, "m/m", "the same number as metres per millimetre")
@@ -55,7 +56,7 @@ def reproduce() -> Reproduction:
     refusal = literal.margins()
     repaired = session(REPAIRED.value, touching.RATE.value)
     script = touching.sinusoid(MEAN.value, AMPLITUDE.value, PERIOD.value, CYCLES)
-    runs = {"literal": literal.run(operator=script), "repaired": repaired.run(operator=script)}
+    runs = {"literal": run(literal, operator=script), "repaired": run(repaired, operator=script)}
     found = touching.columns(runs, CYCLES * PERIOD.value)
     statements = (
         _literal(runs["literal"]), _refused(refusal), _converges(runs["repaired"]), _held(runs["repaired"]),

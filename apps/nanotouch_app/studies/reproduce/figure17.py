@@ -14,6 +14,7 @@ from nanotouch.touch.session import Control
 
 from nanotouch_app.studies.reproduce import paper, touching
 from nanotouch_app.studies.reproduce.statement import Parameter, Reproduction, Statement, holds, quantity
+from nanotouch_app.studies.reproduce.stopped import run
 
 LITERAL = Parameter("alpha_p, literal", 4e-3, "m/m", "Sec. VI-B, as printed")
 REPAIRED = Parameter("alpha_p, repaired", 4.5e-5, "m/m", "Eq. 21: 0.6 + 0.3 um over 2 cm")
@@ -68,7 +69,7 @@ def reproduce() -> Reproduction:
     refused = literal.margins()
     repaired = session(REPAIRED.value, touching.RATE.value, "default")
     rescaled = session(NEAR.value, touching.RATE.value, "default", alpha_f=FELT.value, height=FIRST)
-    runs = {name: made.run(operator=SCRIPT) for name, made in
+    runs = {name: run(made, operator=SCRIPT) for name, made in
             {"literal": literal, "repaired": repaired, "felt": rescaled}.items()}  # fmt: skip
     found = touching.columns(runs, sum(step.duration for step in SCRIPT))
     felt = runs["repaired"]

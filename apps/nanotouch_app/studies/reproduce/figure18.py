@@ -13,6 +13,7 @@ from nanotouch.touch.operator import Input
 
 from nanotouch_app.studies.reproduce import drawing, paper, touching
 from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, near, quantity
+from nanotouch_app.studies.reproduce.stopped import run
 
 LITERAL = Parameter("alpha_p, literal", 1e-6, "m/m", "Sec. VI-C, as printed")
 REPAIRED = Parameter("alpha_p, repaired", 1e-4, "m/m", "ours: 480 nm are 4.8 mm of the master")
@@ -46,7 +47,7 @@ def scan(touched: nt.Session) -> nt.Recording:
         Input(0.1, x0, 3e-6, 0.5), Input(0.1, x0, 3e-6, 2.0), Input(force, x0, 3e-6, 1.0), Input(force, x0, 3e-6, 1.0),
         Input(force, x1, 3e-6, TIME.value),
     ]  # fmt: skip
-    recording = touched.run(operator=script)
+    recording = run(touched, operator=script)
     return recording[recording.time > 4.0]
 
 

@@ -11,6 +11,7 @@ from nanotouch import margins, presets
 
 from nanotouch_app.studies.reproduce import drawing, paper, touching
 from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, quantity
+from nanotouch_app.studies.reproduce.stopped import run
 
 SIZE = Parameter("smallest and largest dot", 10e-9, "m", "Sec. VI-C, 10 to 30 nm")
 TIME = Parameter("time of the line", 40.0, "s", "not in the text")
@@ -34,7 +35,7 @@ def session() -> nt.Session:
 
 def follow(touched: nt.Session) -> nt.Recording:
     """The line alone, without the landing."""
-    recording = touched.run(TIME.value)
+    recording = run(touched, TIME.value)
     moving = np.abs(recording.x - recording.x[0]) > 1e-12
     return recording[moving & (recording.x < recording.x[-1] - 1e-12)]
 
