@@ -21,6 +21,7 @@ spec.loader.exec_module(recordings)
 SHARE = 1e-3
 
 
+@pytest.mark.filterwarnings("ignore:the session was stopped")
 @pytest.mark.parametrize("name", recordings.SESSIONS)
 def test_a_session_is_what_it_was(name: str) -> None:
     columns = recordings.SESSIONS[name]()
