@@ -86,7 +86,9 @@ def test_properties_between_pixels_are_their_mean_by_the_spline() -> None:
     assert Surface(flat).properties(1e-9, 1e-9) == (None, None)
 
 
-@pytest.mark.xfail(reason="29 of 10 762 rows differ since the stop of a device fades otherwise; not followed yet", strict=False)
+@pytest.mark.xfail(
+    reason="16 pN of 70 nN: the plan of one place and that of the surface differ beside zero force", strict=False
+)
 @pytest.mark.filterwarnings("ignore:the session was stopped")
 def test_a_session_feels_what_is_under_the_tip() -> None:
     """The simulated truth at either side is the law of that side; the run repeats itself and replays."""
