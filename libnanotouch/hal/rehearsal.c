@@ -139,8 +139,9 @@ static nt_status play_armed(play *p)
         status = play_period(p, (uint64_t)i);
         p->asked->pass(p->asked->host, p->asked->configuration.period);
     }
+    const nt_capabilities *has = &p->hal.capabilities;
     if (p->new_readings >= SAME_LEAST) /* NaN differs from itself: what is not measured has "moved" */
-        p->seen->same |= ((1u << NT_READS) - 1u) & ~p->moved;
+        p->seen->same |= nt_reading_may_hold(has->can, has->axes) & ~p->moved;
     nt_hal_disarm(&p->hal);
     return status;
 }

@@ -203,10 +203,11 @@ double nt_plan_doubt_share(nt_plan *plan, double error)
     const doubt of = doubt_of(plan, 0.0, plan->deformation.doubt);
     const double fold = shift_by(plan, 0.0, plan->deformation.doubt),
                  farthest = FARTHEST_DOUBT * fabs(plan->release_gap);
-    double beside = NT_ELASTIC_BESIDE * fold + nt_plan_away_from_folds(plan), off = 0.0;
-    for (int last = 0; is_felt && of.known && !last; beside *= last ? 1.0 : 2.0) {
+    double beside = NT_ELASTIC_BESIDE * fold + nt_plan_away_from_folds(plan);
+    double off = is_felt && of.known ? error_in_doubt(plan, &of, beside) : 0.0;
+    while (off > LITTLE * error && beside < farthest) {
+        beside = fmin(2.0 * beside, farthest);
         off = error_in_doubt(plan, &of, beside);
-        last = off <= LITTLE * error || beside >= farthest;
     }
     plan->deformation.beside = beside;
     return off;

@@ -48,7 +48,6 @@ def test_after_the_last_row_it_holds(touched: nt.Recording) -> None:
     assert over.state[5010:].all()
 
 
-@pytest.mark.filterwarnings("ignore:the amplitude is the same number")  # of a touch without tapping
 def test_it_keeps_the_contract(touched: nt.Recording) -> None:
     for slave in (False, True):
         seen = nt.hal.rehearse(nt.hal.Replay(touched), slave=slave, period=1e-4, duration=0.05, real_time=False)
