@@ -36,9 +36,11 @@ int64_t nt_wall_wake(const nt_session *session)
     return llround(fmin(WAKE, 0.5e9 * nt_wall_longest_lag(session)));
 }
 
+/* A motor that is not simulated here may have a hand on it, whether or not its program says so. */
 static int is_driven(const nt_session *session)
 {
-    return nt_session_pace(session) == NT_PACE_WALL;
+    const int pushes = !session->simulates[NT_HALF_MASTER] && session->master.capabilities.can & NT_CAN_PUSH;
+    return !is_real(&session->slave) && (is_real(&session->master) || pushes);
 }
 
 nt_wall_pace nt_session_wall_pace(const nt_session *session)

@@ -20,6 +20,7 @@
 typedef struct handle {
     const nt_host *host;
     double period;
+    int is_modest; /* it pushes, and does not say that it is real */
     atomic_int is_silent;
     int64_t time;
     uint64_t sequence;
@@ -34,7 +35,7 @@ static nt_status open_handle(void *context, const nt_host *host, nt_problem *pro
 
 static nt_status describe_handle(void *context, nt_capabilities *capabilities)
 {
-    capabilities->can = NT_IS_REAL | NT_CAN_PUSH;
+    capabilities->can = NT_CAN_PUSH | (((handle *)context)->is_modest ? 0u : (uint32_t)NT_IS_REAL);
     capabilities->axes = 1;
     capabilities->period = ((handle *)context)->period;
     return NT_OK;
@@ -107,10 +108,9 @@ static void each_device_has_its_pace(void **state)
 }
 
 /* What is counted: the loop is that of a master that measures less often by hold and latency. */
-static void a_margin_counts_hold_and_latency(void **state)
+static void margin_counts_hold_and_latency(int is_modest)
 {
-    (void)state;
-    handle h = {.period = 1e-3};
+    handle h = {.period = 1e-3, .is_modest = is_modest};
     nt_session_setup setup = setup_on(&h);
     nt_session *session = open_session(&setup);
     assert_int_equal(nt_session_start(session, NT_PACE_WALL, 1), NT_OK);
@@ -136,6 +136,12 @@ static void a_margin_counts_hold_and_latency(void **state)
     assert_int_equal(nt_session_start(session, NT_PACE_HARD, 1), NT_OK);
     assert_int_equal(nt_session_halt(session), NT_OK);
     nt_session_close(session);
+}
+static void a_margin_counts_hold_and_latency(void **state)
+{
+    (void)state;
+    margin_counts_hold_and_latency(0);
+    margin_counts_hold_and_latency(1); /* as a device in Python or on the mailbox */
 }
 
 /* Silent for a while in the middle of it. */
