@@ -45,11 +45,13 @@ nt_sum nt_motor_fade(const nt_touch *touch, nt_touch_state *state)
     return fade->left = left;
 }
 
+/* What the damping has taken away does not come back: it never rises. */
 double nt_motor_faded(const nt_touch *touch, const nt_touch_state *state, int axis, double speed)
 {
-    const double left = state->fade.left * state->fade.from[axis];
+    const double left = state->fade.left * state->fade.from[axis], last = state->command.motor_force[axis];
     const double braked = left - FADE_DAMPING * touch->rig.master.damping * speed;
-    return left > 0.0 ? clamp(braked, 0.0, left) : clamp(braked, left, 0.0);
+    return left > 0.0 ? clamp(braked, 0.0, lesser(left, greater(0.0, last)))
+                      : clamp(braked, greater(left, lesser(0.0, last)), 0.0);
 }
 
 double nt_motor_limit(const nt_limits *limits, double largest_step, double last, double force, double speed)

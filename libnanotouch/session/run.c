@@ -120,7 +120,11 @@ nt_status nt_session_sample(nt_session *session, uint64_t tick, nt_sample *sampl
 nt_status nt_session_write(nt_session *session, uint64_t tick, const nt_command *command)
 {
     nt_action action = {.size = sizeof action, .tick = tick, .time = session->time};
-    return nt_hal_command(&session->master, &session->slave, command, &action);
+    if (session->now->touch.rig.master.motor)
+        return nt_hal_command(&session->master, &session->slave, command, &action);
+    nt_command written = *command; /* a device that has a motor is not told to use it */
+    written.motor_force[NT_X] = written.motor_force[NT_Y] = written.motor_force[NT_Z] = 0.0;
+    return nt_hal_command(&session->master, &session->slave, &written, &action);
 }
 
 /* The record of this tick goes straight into the ring; one that has no place there can still be shown. */

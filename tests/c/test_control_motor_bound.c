@@ -283,8 +283,8 @@ static double ride_on(ride *r, enum event event, int lasting)
         pass(r);
         for (int i = 0; i < AXES; ++i) {
             const double force = r->command.motor_force[i];
-            assert_true(fabs(force) <= fabs(from[i]));
-            assert_true(force * from[i] >= 0.0); /* and it is not turned round */
+            assert_true(fabs(force) <= fabs(last[i])); /* nor does it rise again: another event may come meanwhile */
+            assert_true(force * from[i] >= 0.0);       /* and it is not turned round */
             assert_true(fabs(force - last[i]) <= r->touch.settings.limits.motor_rate * period * (1.0 + rounding));
             last[i] = force;
         }

@@ -14,21 +14,14 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from adversary_draws import Dice, Plot
+from adversary_hand import Hand, changed, fastest
 from adversary_judge import Judge
 from nanotouch.errors import Error
 from nanotouch.touch.hal import Action, Capabilities, Channel, Reading
-from nanotouch.touch.operator import Hold, Input
+from nanotouch.touch.operator import Input
 
-DURATION = 0.5
+DURATION = 0.25
 """of a run, in the session [s]"""
-FASTEST = 1.0
-"""of a hand, where its master declares nothing [m/s]"""
-MODES = ("point", "point", "scan", "topography", "approach", "curve")
-
-
-def fastest(rig: nt.Rig) -> float:
-    """Speed of a hand that the rig is made for [m/s]."""
-    return float(getattr(rig.master, "max_speed", FASTEST))
 
 
 class Refused(Exception):
@@ -55,100 +48,35 @@ def opened(plot: Plot, **own: Any) -> nt.Session:
     raise Refused(why)
 
 
-class Hand:
-    """Blows of any force, or any way, as fast as a hand goes."""
-
-    def __init__(self, session: Any, plot: Plot, d: Dice) -> None:
-        self.session, self.plot, self.d = session, plot, d
-        self.at = np.array([0.0, 0.0, float(session.core.master_start)])
-        self.presses, self.roams = d.between(0.3, 1.0), d.between(0.0, 1.0)  # shares of its blows
-        self.tip, self.steep = np.zeros(2), None
-        if plot.surface is not None:
-            heights, pixel = plot.surface.topography.heights, plot.surface.topography.pixel_size
-            slope = np.hypot(*np.gradient(heights, pixel[1], pixel[0]))
-            row, column = np.unravel_index(int(np.argmax(slope)), slope.shape)
-            self.steep = np.array([column * pixel[0], row * pixel[1]])
-
-    def follow(self, columns: Any) -> None:
-        """Where the master is now."""
-        if len(columns["time"]):
-            sideways = [columns[name][-1] if name in columns else 0.0 for name in ("master_x", "master_y")]
-            at = np.array([*sideways, columns["master_position"][-1]])
-            self.at = np.where(np.isfinite(at), at, self.at)
-            self.tip = np.array([columns["x"][-1], columns["y"][-1]])
-
-    def place(self) -> tuple[float, float]:
-        """Where an input leads the tip: with a master of three axes nowhere."""
-        d, surface = self.d, self.plot.surface
-        if self.plot.rig.stage.axes == 1.0 or not d.chance(self.roams):
-            return math.nan, math.nan
-        if surface is None:
-            return d.between(-1e-6, 1e-6), d.between(-1e-6, 1e-6)
-        if self.steep is not None and d.chance(0.5):
-            return float(self.steep[0]), float(self.steep[1])
-        return d.between(0.0, surface.size[0]), d.between(0.0, surface.size[1])
-
-    def down(self) -> Hold:
-        """The first: the tip comes near, or lands."""
-        alpha = self.session.settings.gains.alpha_p
-        to = self.at + np.array([0.0, 0.0, self.d.between(0.7, 1.3) * self.plot.clearance / alpha])
-        end = 0.49 * self.plot.rig.master.travel
-        to[2] = min(to[2], end)
-        return Hold(self._axes(to), math.nan, math.nan, self.d.log(5e-3, 0.05))
-
-    def _axes(self, to: Any) -> Any:
-        return tuple(map(float, to)) if self.plot.rig.master.axes == 3.0 else float(to[2])
-
-    def blow(self) -> Input | Hold:
-        d, gains = self.d, self.session.settings.gains
-        three = self.plot.rig.master.axes == 3.0
-        x, y = self.place()
-        if d.chance(0.5):
-            full = min(8.0, gains.alpha_f * self.session.settings.limits.force)
-            push = (d.log(0.3, 3.0) if d.chance(self.presses) else -d.between(0.0, 1.0)) * full
-            side = [d.between(-6.0, 6.0) * self.roams if three else 0.0 for _ in range(2)]
-            return Input((*side, push), x, y, d.log(1e-4, 0.05))  # type: ignore[arg-type]
-        down = 1.0 if d.chance(self.presses) else -1.0
-        way = np.array([d.one((-1, 1)) * d.log(1e-9, 400e-9) if three and d.chance(self.roams) else 0.0
-                        for _ in range(2)] + [down * d.log(1e-9, 200e-9)]) / gains.alpha_p  # fmt: skip
-        if three and self.steep is not None and d.chance(0.4):
-            way[:2] = (self.steep - self.tip) / gains.alpha_p
-        end = 0.49 * self.plot.rig.master.travel
-        to = np.clip(self.at + way, -end, end)
-        quickest = float(np.linalg.norm(to - self.at)) / fastest(self.plot.rig)
-        return Hold(self._axes(to), x, y, quickest * d.log(1.0, 30.0))
+def in_thread(session: Any, hand: Hand, d: Dice, judge: Judge) -> None:
+    """A while in its own thread, as fast as it goes, and back by a moment while it runs."""
+    session.aim(hand.blow())
+    session.start("free", duration=0.3)
+    for _ in range(3):
+        judge.watch(session.read(1000))
+        with contextlib.suppress(Error):  # it has ended
+            session.rewind(d.between(0.0, 0.2))
+    session.halt()
+    judge.watch(session.read(65536))
 
 
-def changed(session: Any, d: Dice) -> None:
-    """One request of a person; what is refused stays."""
-    scene, settings = session.scene, session.settings
-    share = d.log(0.5, 2.0)
-    what = d.one(("scene", "settings", "mode", "scale", "clutch", "stop"))
-    if what == "scene":
-        field = d.one(("sample.youngs_modulus", "adhesion.work_of_adhesion", "medium.relative_humidity",
-                       "friction.shear_strength", "friction.coefficient"))  # fmt: skip
-        value = d.between(0.0, 0.8) if field == "medium.relative_humidity" else float(scene[field]) * share
-        session.change("scene", field, value)
-    elif what == "settings":
-        field = d.one(("limits.force", "limits.stage_speed", "limits.lateral_speed", "limits.lateral_force",
-                       "limits.indentation", "gains.set_point", "limits.motor_force", "gains.force_gain"))  # fmt: skip
-        session.change("settings", field, float(settings[field]) * share)
-    elif what == "mode":
-        session.set_mode(d.one(MODES))
-    elif what == "scale":
-        session.rescale(settings.gains.alpha_p * share, settings.gains.alpha_f * d.log(0.5, 2.0))
-    elif what == "clutch":
-        session.clutch(d.chance(0.5))
-    else:
-        session.emergency_stop(True)
-        session.emergency_stop(False)
+def held_still(session: Any, plot: Plot, d: Dice, judge: Judge) -> None:
+    """A hand that presses with one force: does a ripple last, or grow?"""
+    settings = session.settings
+    x, y = session.path[0]
+    press = Input(d.between(0.2, 0.7) * min(5.0, settings.gains.alpha_f * settings.limits.force), x, y, 0.05)
+    judge.watch(session.advance(0.2, press))
+    columns = session.advance(0.45, press)
+    judge.watch(columns)
+    if (columns["contact_radius"] > 0.0).all() and (columns["state"] == 0).all():
+        judge.calm(session, columns["tip_force"])
 
 
 def fought(session: Any, plot: Plot, d: Dice, judge: Judge) -> None:
     """Blows, requests, and back to a moment before; what stops is armed again, but after a fault."""
     hand = Hand(session, plot, d)
     judge.promise(session)
-    begun = session.snapshot()
+    kept = [(session.snapshot(), False)]
     columns = session.advance(0.06, hand.down())
     judge.watch(columns)
     left = DURATION
@@ -156,20 +84,26 @@ def fought(session: Any, plot: Plot, d: Dice, judge: Judge) -> None:
         hand.follow(columns)
         if d.chance(0.15):
             with contextlib.suppress(Error):
-                changed(session, d)
+                changed(session, d, judge)
             judge.promise(session)
-        if d.chance(0.03):
-            try:
-                session.restore(begun)
-                judge.promise(session)
-            except Error:  # what was changed since is not changed back
-                pass
+        if d.chance(0.04):
+            kept.append((session.snapshot(), judge.clutched))
+        if d.chance(0.04):
+            moment, clutched = d.one(kept)
+            with contextlib.suppress(Error):  # what was changed since is not changed back
+                session.restore(moment)
+                judge.rewound(clutched)
+            judge.promise(session)
         lasts = d.log(1e-3, 0.08)
         columns = session.advance(lasts, hand.blow())
         judge.watch(columns)
         left -= lasts
         if session.state in ("RETRACT", "LATCHED") and plot.fault is None:
             session.arm(True)
+    if d.chance(0.1):
+        in_thread(session, hand, d, judge)
+    elif plot.rig.master.axes == 1.0 and plot.fault is None and session.mode == "point" and d.chance(0.4):
+        held_still(session, plot, d, judge)
 
 
 def by_session(plot: Plot, d: Dice, judge: Judge) -> None:
@@ -222,11 +156,11 @@ def by_master(plot: Plot, d: Dice, judge: Judge) -> None:
     plot.settings.gains.force_gain = 0.0
     session = opened(plot, master=Moved(plot, d))
     judge.promise(session)
-    for _ in range(12):
+    for _ in range(8):
         judge.watch(session.advance(0.04))
         if d.chance(0.3):
             with contextlib.suppress(Error):
-                changed(session, d)
+                changed(session, d, judge)
             judge.promise(session)
         if session.state in ("RETRACT", "LATCHED"):
             session.arm(True)
@@ -276,7 +210,7 @@ def by_slave(plot: Plot, d: Dice, judge: Judge) -> None:
     hand = Hand(session, plot, d)
     begun, ticks = len(slave.force), 0
     columns = session.advance(0.06, hand.down())
-    left = 0.3
+    left = 0.2
     while left > 0.0:
         hand.follow(columns)
         lasts = d.log(1e-3, 0.05)
@@ -308,18 +242,20 @@ def by_live(plot: Plot, d: Dice, judge: Judge) -> None:
     heights = np.zeros((SMALL, SMALL)) if plot.surface is None else plot.surface.topography.heights
     pixel = (10e-9, 10e-9) if plot.surface is None else plot.surface.topography.pixel_size
     subject = Subject("adversary", "", plot.scene, plot.rig, nt.Topography(heights, pixel))
+    stepped = plot.fault is not None or d.chance(0.8)
     try:
-        host = Seen(subject, lambda message: None, stepped=True)
+        host = Seen(subject, lambda message: None, stepped=stepped)
     except Error as error:
         raise Refused(str(error)) from error
+    asks = ("move", "move", "wheel", "press", "press", "change", "undo", "redo", "arm", "stop")
     try:
         judge.promise(host.session)
         if plot.fault is not None:
             name, channel, at, duration, value = plot.fault
             host.session.inject(nt.Faults().add(name, channel, at=at, duration=duration, value=value))
-        for _ in range(25):
+        for _ in range(12):
             length = d.log(0.3e-9, 300e-9)
-            asked = d.one(("move", "move", "wheel", "press", "press", "change", "undo", "redo", "arm", "stop"))
+            asked = d.one(asks if stepped else (*asks, "rewind", "faster", "slower"))
             host.answer({
                 "move": {"way": tuple(d.one((-1, 1)) * d.log(0.1, 1.0) * length for _ in range(3))},
                 "wheel": {"steps": d.between(-5.0, 20.0)}, "press": {"on": d.chance(0.7)},
@@ -327,7 +263,12 @@ def by_live(plot: Plot, d: Dice, judge: Judge) -> None:
                            "value": float(host.session.scene.sample.youngs_modulus) * d.log(0.5, 2.0)},
             }.get(asked, {}) | {"do": asked})  # fmt: skip
             judge.promise(host.session)
-            host.advance(d.log(0.01, 0.06))
+            lasts = d.log(0.01, 0.06)
+            if stepped:
+                host.advance(lasts)
+            else:
+                time.sleep(lasts)
+                host.tick()
     finally:
         host.close()
 

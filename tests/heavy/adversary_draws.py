@@ -174,7 +174,7 @@ def plot_of(seed: int, door: str = "") -> Plot:
     relief = d.chance(0.8 if rig.master.axes == 3.0 else 0.4)
     surface = relief_of(d, float(scene.tip.radius)) if relief else None
     settings = settings_of(d, scene, rig, surface)
-    clearance = d.log(5e-9, 60e-9)
+    clearance = min(d.log(5e-9, 60e-9), max(4e-9, 0.04 * float(settings.limits.stage_speed)))  # it lands in time
     plot = Plot(seed, entered, scene, rig, surface, settings, clearance, None)
     if entered in ("session", "live") and d.chance(0.35):
         plot.fault = fault_of(d, plot)

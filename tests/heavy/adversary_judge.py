@@ -6,6 +6,7 @@ new limit (force), or has left the sample (sideways, indentation)."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -60,6 +61,7 @@ class Judge:
         self.warned = False  # that the limit protects nothing: a snap-in alone passes it
         self.carried = {"force": 0.0, "sideways": 0.0, "indentation": 0.0}
         self.stopped = -1.0  # since when [s]; below 0: it is in RUN
+        self.clutched = False  # uncoupled by the person: an event as a stop is
         self.before = np.zeros(3)  # of the motor [N]
         self.given = 0.0  # to the hand since [J]
         self.last: Any = None
@@ -130,25 +132,48 @@ class Judge:
                                  columns["master_position"]])  # fmt: skip
         self._met("motor", np.abs(force).max(axis=1), self.motor, time)
         hand = getattr(self.now, "hand", None)
-        if hand is None or (self.fault is not None and self.fault[1] in ("motor", "master_position")):
-            return  # nothing is printed, or what motor and hand really do is not in the columns
+        if hand is None or hand.force == 0.0 or (self.fault and self.fault[1] in ("motor", "master_position")):
+            return  # nothing is printed, no motor acts, or what motor and hand really do is not in the columns
         self._met("hand", np.linalg.norm(force, axis=1), hand.force, time)
-        for i, state in enumerate(columns["state"]):
-            if state == 0 or (self.last is not None and time[i] < self.last[0]):
-                self.stopped = -1.0
-            elif self.stopped < 0.0 and self.last is not None:
-                self.stopped, self.given = float(time[i]), 0.0
-                self.before = self.last[1]
-            if self.stopped >= 0.0 and state != 0 and self.last is not None:
-                self._faded(force[i], place[i], float(time[i]), hand)
-            self.last = (float(time[i]), force[i], place[i])
+        stands = (np.asarray(columns["state"]) != 0) | self.clutched
+        turns = np.flatnonzero((np.diff(stands) != 0) | (np.diff(time) < 0.0)) + 1
+        for first, last in itertools.pairwise((0, *turns, len(time))):
+            if first > 0 and time[first] < time[first - 1]:
+                self.rewound(self.clutched)
+            elif first > 0:
+                self.last = (float(time[first - 1]), force[first - 1], place[first - 1])
+            self._piece(force[first:last], place[first:last], time[first:last], bool(stands[first]), hand)
+        self.last = (float(time[-1]), force[-1], place[-1])
 
-    def _faded(self, force: Any, place: Any, time: float, hand: Any) -> None:
-        rest, met = 1e-6 * self.motor, float(np.linalg.norm(force))
-        self._met("motor after a stop", met, float(np.linalg.norm(self.before)) + rest, time)
-        if time - self.stopped > max(FADED, hand.fade_time) + 2e-3:
-            self._met("motor faded", met, rest, time)
-        way = place - self.last[2]
-        if np.isfinite(way).all():
-            self.given += float(np.dot(self.last[1], way))
-            self._met("energy to the hand", max(self.given, 0.0), hand.energy + 1e-9, time)
+    def rewound(self, clutched: bool = False) -> None:
+        """It goes on from another moment: what was before is not known."""
+        self.stopped, self.last, self.clutched = -1.0, None, clutched
+
+    def _piece(self, force: Any, place: Any, time: Any, stands: bool, hand: Any) -> None:
+        """Ticks that all stand, or all run; from where the last ones have ended."""
+        if not stands or self.last is None or time[0] < self.last[0]:
+            self.stopped = -1.0
+            return
+        if self.stopped < 0.0:
+            self.stopped, self.given, self.before = float(time[0]), 0.0, self.last[1]
+        rest = 1e-6 * self.motor
+        size = np.linalg.norm(force, axis=1)
+        self._met("motor after a stop", size, float(np.linalg.norm(self.before)) + rest, time)
+        late = time - self.stopped > max(FADED, hand.fade_time) + 2e-3
+        self._met("motor faded", size[late], rest, time[late])
+        way = np.diff(np.vstack([self.last[2], place]), axis=0)
+        held = np.vstack([self.last[1], force[:-1]])
+        given = self.given + np.cumsum(np.nan_to_num((held * way).sum(axis=1)))
+        self._met("energy to the hand", np.maximum(given, 0.0), hand.energy + 1e-9, time)
+        self.given = float(given[-1])
+
+    def calm(self, session: Any, force: Any) -> None:
+        """Of three windows of a hand that holds still: the ripple of the last is no more than that of the one before,
+        by 5 % and what the read-out shows of noise and steps."""
+        ripples = []
+        for piece in np.array_split(force, 3):
+            ticks = np.arange(len(piece)) / len(piece)
+            ripples.append(float(np.ptp(piece - np.polyval(np.polyfit(ticks, piece, 2), ticks))))
+        probe = session.rig.probe
+        noise = float(probe.spring_constant * probe.sensitivity * (probe.noise + 2.0 * probe.resolution))
+        self._met("ripple", ripples[2], 1.05 * ripples[1] + noise, 0.0)

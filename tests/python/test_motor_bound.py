@@ -65,6 +65,17 @@ def check(before: float, after: NDArray[np.float64], rig: nt.Rig, settings: nt.S
     assert not after[math.ceil(time * settings.gains.rate) :].any()
 
 
+def test_a_motor_that_the_rig_does_not_have_is_told_nothing() -> None:
+    """The device has one, the rig says that it has none: no force is promised, and none is written."""
+    rig = nt.Rig(master={"gauge": "no", "motor": "no", "travel": 0.02})
+    master = Swung(0.01, "nothing")
+    session = nt.Session(rig=rig, master=master, seed=1, clearance=5e-9)
+    columns = session.advance(0.4)
+    assert session.guarantee().hand.force == 0.0
+    assert np.abs(columns["motor_force"]).max() > 0.1  # what a hand would feel
+    assert not np.any(master.forces)
+
+
 @pytest.mark.parametrize("fails", ["raises", "nan", "silent"])
 @pytest.mark.parametrize("speed", [0.01, 0.1])
 def test_a_master_that_fails_while_the_hand_moves(speed: float, fails: str) -> None:
