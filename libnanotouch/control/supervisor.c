@@ -76,7 +76,7 @@ static uint32_t seen_of_master(const nt_supervisor *supervisor, const nt_sample 
 static uint32_t seen_of_slave(const nt_supervisor *supervisor, const nt_sample *sample)
 {
     const double *stage = sample->stage_position;
-    const int has_place = isfinite(stage[NT_X]) && isfinite(stage[NT_Y]);
+    const int has_place = isfinite(stage[NT_X] - stage[NT_Y]); /* both */
     return bit(has_place && is_within(stage[NT_Z], supervisor->stage_range), NT_SEES_STAGE) |
            bit(isfinite(sample->deflection[NT_Z]), NT_SEES_DEFLECTION) |
            bit(shows_sideways(supervisor, sample), NT_SEES_LATERAL) |

@@ -118,8 +118,22 @@ static double drive_stage(const nt_touch *touch, nt_touch_state *state, const nt
     return command;
 }
 
+/* Farther from where it was told to be than all of its travel no stage can be, sideways. */
+static int is_elsewhere(const nt_touch *touch, const nt_touch_state *state, const nt_sample *sample)
+{
+    const double *read = sample->stage_position, *sent = state->command.stage_position;
+    const double dx = read[NT_X] - sent[NT_X], dy = read[NT_Y] - sent[NT_Y], most = touch->rig.stage.travel;
+    return !(dx * dx + dy * dy <= most * most);
+}
+
 void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample, nt_command *command)
 {
+    nt_sample blind;
+    if (is_elsewhere(touch, state, sample)) {
+        blind = *sample;
+        blind.stage_position[NT_X] = blind.stage_position[NT_Y] = NAN; /* as bad as no numbers */
+        sample = &blind;
+    }
     supervise(touch, state, sample);
     nt_observe(touch, state, sample);
     drive_motor(touch, state, act(touch, state));
@@ -130,8 +144,10 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     state->command.motor_force[NT_Z] = state->motor_force;
     state->command.drive_amplitude = touch->drive_amplitude;
     state->command.drive_frequency = touch->drive_frequency;
-    for (int i = 0; i < NT_AXES; ++i)
-        state->sent[state->ticks % NT_TOUCH_SENT][i] = state->command.motor_force[i];
+    double *sent = state->sent[state->ticks % NT_TOUCH_SENT];
+    sent[NT_X] = state->command.motor_force[NT_X];
+    sent[NT_Y] = state->command.motor_force[NT_Y];
+    sent[NT_Z] = state->motor_force;
     if (state->command.state != (uint32_t)state->supervisor.state)
         state->since = state->ticks;
     state->command.state = (uint32_t)state->supervisor.state;

@@ -192,12 +192,42 @@ static void a_master_that_comes_back_is_indexed_anew(void **state)
     assert_int_equal(b.command.state, NT_RUN);
 }
 
+/* A stage of 100 um is never 100 um from where it was told to be, along any axis: that is no number. */
+static void a_place_that_cannot_be_is_no_number(void **state)
+{
+    (void)state;
+    const double travel = nt_rig_defaults().stage.travel, off[] = {1.0, -1.0, 1e300, 1.01 * travel, -1.01 * travel};
+    for (int axis = NT_X; axis <= NT_Z; ++axis)
+        for (int i = 0; i < 5; ++i) {
+            bench b = bench_of();
+            nt_sample sample = {.tick = 0};
+            for (int k = 0; k < 20; ++k) {
+                sample.deflection[NT_Z] = 1e-10 * sin(1.7 * k);
+                step(&b, &sample);
+            }
+            assert_int_equal(b.command.state, NT_RUN);
+            if (axis != NT_Z) { /* far, but it can be */
+                sample.stage_position[axis] = 0.99 * travel;
+                step(&b, &sample);
+                assert_int_equal(b.command.state, NT_RUN);
+            }
+            sample.stage_position[axis] = off[i];
+            step(&b, &sample);
+            assert_int_equal(b.command.state, NT_HOLD);
+            assert_true(b.command.reasons & NT_REASON_INVALID);
+            assert_int_equal(b.state.supervisor.seen, NT_SEES_ALL & ~NT_SEES_STAGE);
+            step(&b, &sample);
+            assert_int_equal(b.command.state, NT_RETRACT);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_fault_of_one_channel_leaves_the_others),
         cmocka_unit_test(no_energy_is_counted_across_a_gap),
         cmocka_unit_test(a_master_that_comes_back_is_indexed_anew),
+        cmocka_unit_test(a_place_that_cannot_be_is_no_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
