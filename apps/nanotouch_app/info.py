@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from nanotouch import curves, images, record
+from nanotouch._io import series
 from nanotouch.errors import MissingExtra, ReadError
 from nanotouch.images.words import lengths
 
@@ -33,7 +34,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is none of them."""
-    with output.busy("reading"):
+    with output.busy("reading"), series.of([args.file]):
         lines, facts = _described(args.file)
     args.answer = {"file": str(args.file), **facts}
     print("\n".join(lines))

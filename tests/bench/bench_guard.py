@@ -21,13 +21,14 @@ KINDS = {"image .gsf": "gsf", "recording": "mcap"}
 CODE = """
 import json, os, sys, time
 from nanotouch import images, record
-from nanotouch._io import worker
+from nanotouch._io import series, worker
 kind, guarded, files = sys.argv[1], sys.argv[2] == "guarded", sys.argv[3:]
 read = images.read if kind == "gsf" else record.read
 import mcap.stream_reader, zstandard
 start, used = time.perf_counter(), sum(os.times()[:4])
-for file in files:
-    read(file, untrusted=guarded)
+with series.of(files):
+    for file in files:
+        read(file, untrusted=guarded)
 worker._stop_at_exit()
 print(json.dumps([time.perf_counter() - start, sum(os.times()[:4]) - used]))
 """

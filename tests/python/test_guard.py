@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import synthetic
 from nanotouch import curves, guard, images, record
-from nanotouch._io import confine, worker
+from nanotouch._io import confine, series, worker
 from nanotouch.errors import Error, ReadError
 from nanotouch_app.main import main
 
@@ -140,6 +140,30 @@ def test_sizes_that_lie_and_archives_in_archives_are_refused(tmp_path: Path) -> 
         archive.write(inner, "../../inner.ZIP")
     with pytest.raises(ReadError, match="is an archive"):
         curves.read(tmp_path / "outer.zip", untrusted=True)
+
+
+def _images(folder: Path, count: int) -> list[Path]:
+    heights = synthetic.asymmetric()
+    return [synthetic.write_matrix(folder / f"{number}.txt", heights + 1e-9 * number, (3e-6, 4e-6))
+            for number in range(count)]  # fmt: skip
+
+
+def test_a_batch_is_read_by_one_child_with_the_answers_of_single_files(tmp_path: Path) -> None:
+    files = _images(tmp_path, 5)
+    alone = [images.read(file, untrusted=True) for file in files]
+    with series.of(files):
+        together = [images.read(file, untrusted=True) for file in files]
+        held = worker.current_series()
+        assert isinstance(held, series.Series)
+        assert held.children == 1
+        with pytest.raises(ReadError):
+            curves.read(files[0], untrusted=True)  # an image; the child stays
+        elsewhere = synthetic.write_matrix(tmp_path / "other.txt", synthetic.asymmetric(), (3e-6, 4e-6))
+        images.read(elsewhere, untrusted=True)  # by a child of its own
+        assert held.children == 1
+    assert worker.current_series() is None
+    for one, other in zip(alone, together, strict=True):
+        np.testing.assert_array_equal(one.heights, other.heights)
 
 
 def test_a_link_leads_to_its_file_alone(tmp_path: Path) -> None:

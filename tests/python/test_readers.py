@@ -18,7 +18,7 @@ pytest.importorskip("SurfaceTopography")
 pytest.importorskip("afmformats")
 
 from nanotouch import curves, formats, guard, images
-from nanotouch._io import readers, transfer, worker
+from nanotouch._io import readers, series, transfer, worker
 from nanotouch.errors import Error, InvalidValue, ReadError
 
 #: A reader of files that begin with ``FAKE``; what follows says how it behaves.
@@ -156,21 +156,21 @@ def _prose(path: Path) -> Path:
     return path
 
 
+DEEDS = [
+    ("loop", r"not read within 0\.4 s and stopped"),
+    ("sleep", r"not read within 0\.4 s and stopped"),
+    ("crash", r"it crashes its reader \(SIGSEGV\)"),
+    ("exit", "the worker gave no valid answer"),
+    ("memory", "asks for more memory than there is"),
+    ("network", "cannot read it"),
+    ("files", "Too many open files"),
+    ("write", r"SIGXFSZ|File too large|cannot read it"),
+    ("absurd", "heights over a range of 23 m"),
+]
+
+
 @linux
-@pytest.mark.parametrize(
-    ("what", "message"),
-    [
-        ("loop", r"not read within 0\.4 s and stopped"),
-        ("sleep", r"not read within 0\.4 s and stopped"),
-        ("crash", r"it crashes its reader \(SIGSEGV\)"),
-        ("exit", "the worker gave no valid answer"),
-        ("memory", "asks for more memory than there is"),
-        ("network", "cannot read it"),
-        ("files", "Too many open files"),
-        ("write", r"SIGXFSZ|File too large|cannot read it"),
-        ("absurd", "heights over a range of 23 m"),
-    ],
-)
+@pytest.mark.parametrize(("what", "message"), DEEDS)
 def test_whatever_a_file_does_to_the_worker_is_a_read_error(
     tmp_path: Path, registered: None, monkeypatch: pytest.MonkeyPatch, what: str, message: str
 ) -> None:
@@ -178,6 +178,27 @@ def test_whatever_a_file_does_to_the_worker_is_a_read_error(
     with pytest.raises(ReadError, match=message):
         images.read(fake(tmp_path / what, what), untrusted=True)
     assert images.read(fake(tmp_path / "next", "normal"), untrusted=True).source == "fake"  # the next file is read
+    assert not (tmp_path / "write.written").exists() or (tmp_path / "write.written").stat().st_size == 0
+
+
+@linux
+def test_whatever_a_file_of_a_batch_does_the_others_are_read(
+    tmp_path: Path, registered: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(guard, "LIMITS", guard.Limits(time=0.4))
+    bad = {fake(tmp_path / what, what): message for what, message in DEEDS}
+    good = [fake(tmp_path / f"good {number}", "normal") for number in range(len(bad) + 1)]
+    batch = [good[0], *(file for pair in zip(bad, good[1:], strict=True) for file in pair)]
+    with series.of(batch):
+        for file in batch:
+            if file in bad:
+                with pytest.raises(ReadError, match=bad[file]):
+                    images.read(file, untrusted=True)
+            else:
+                assert images.read(file, untrusted=True).source == "fake"
+        held = worker.current_series()
+        assert isinstance(held, series.Series)
+        assert 1 < held.children <= len(bad) + 1
     assert not (tmp_path / "write.written").exists() or (tmp_path / "write.written").stat().st_size == 0
 
 
@@ -200,7 +221,7 @@ def test_a_worker_that_was_killed_is_started_again(tmp_path: Path) -> None:
 def test_no_worker_is_left_behind(tmp_path: Path) -> None:
     path = synthetic.write_matrix(tmp_path / "image.txt", synthetic.asymmetric(), (3e-6, 4e-6))
     code = (
-        "import sys, nanotouch as nt; from nanotouch._io import worker\n"
+        "import sys, nanotouch as nt; from nanotouch._io import series, worker\n"
         f"nt.images.read({str(path)!r}, untrusted=True); print(worker._current.pid)"
     )
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}

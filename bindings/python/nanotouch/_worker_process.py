@@ -7,7 +7,9 @@ import gc
 import importlib
 import json
 import os
+import signal
 import socket
+import struct
 import sys
 import tempfile
 import warnings
@@ -105,12 +107,35 @@ def _child(request: dict[str, Any], channel: int) -> int:
     file, folder = Path(request["file"]), request.get("folder")
     tempfile.tempdir = folder
     scratch = None if folder is None else (Path(folder), int(request["written"]))
-    confine.confine(request["limits"], _readable(file), scratch)
-    with os.fdopen(channel, "r+b" if request["job"] == "curves.stream" else "wb", buffering=0) as stream:
-        for answer in _answers(request, file, stream):
+    is_asked = request.get("series") or request["job"] == "curves.stream"
+    with os.fdopen(channel, "r+b" if is_asked else "wb", buffering=0) as stream:
+        files = _files_of(stream) if request.get("series") else [file]
+        confine.confine(request["limits"], _readable(files), scratch)
+        found = _in_turn(stream) if request.get("series") else _answers(request, file, stream)
+        for answer in found:
             for piece in answer:
                 _write(stream, piece)
     return 0
+
+
+def _line(stream: Any) -> bytes:
+    """Up to the end of a line; empty where the other side has closed."""
+    line = bytearray()
+    while not line.endswith(b"\n") and (byte := stream.read(1)):
+        line += byte
+    return bytes(line)
+
+
+def _in_turn(stream: Any) -> Iterator[list[bytes | memoryview]]:
+    """The answers of a batch; each file has the time of a single one."""
+    gc.freeze()
+    while line := _line(stream):
+        request = json.loads(line)
+        seconds = request["limits"]["time"]
+        signal.setitimer(signal.ITIMER_REAL, 3.0 * seconds)
+        signal.setitimer(signal.ITIMER_PROF, seconds)
+        yield from _answers(request, Path(request["file"]), stream)
+        gc.collect()
 
 
 def _write(stream: Any, piece: bytes | memoryview) -> None:
@@ -119,13 +144,29 @@ def _write(stream: Any, piece: bytes | memoryview) -> None:
         left = left[stream.write(left) :]
 
 
-def _readable(file: Path) -> list[Path]:
-    """The file, and those that belong to it: of the same stem, and the other half of a pair."""
-    beside = [one for one in os.listdir(file.parent) if Path(one).stem == file.stem]
-    pair = []
-    if file.suffix.lower() == ".ibw":
-        pair = importlib.import_module("nanotouch.curves.asylum_pair").files_of(file)
-    return [file, *(file.parent / one for one in beside[:_BESIDE]), *pair]
+def _files_of(stream: Any) -> list[Path]:
+    """The files of a batch."""
+    (left,) = struct.unpack("<Q", stream.read(8))
+    names = bytearray()
+    while len(names) < left and (piece := stream.read(left - len(names))):
+        names += piece
+    return [Path(name) for name in json.loads(names)]
+
+
+def _readable(files: list[Path]) -> list[Path]:
+    """The files, and those that belong to them: of the same stem, and the other half of a pair."""
+    found = dict.fromkeys(files)
+    for folder in {file.parent for file in files}:
+        beside: dict[str, list[Path]] = {}
+        for name in os.listdir(folder):
+            beside.setdefault(Path(name).stem, []).append(folder / name)
+        for file in files:
+            if file.parent == folder:
+                found |= dict.fromkeys(beside.get(file.stem, [])[:_BESIDE])
+    for file in files:
+        if file.suffix.lower() == ".ibw":
+            found |= dict.fromkeys(importlib.import_module("nanotouch.curves.asylum_pair").files_of(file))
+    return list(found)
 
 
 def _answers(request: dict[str, Any], file: Path, stream: Any) -> Iterator[list[bytes | memoryview]]:
@@ -138,7 +179,7 @@ def _answers(request: dict[str, Any], file: Path, stream: Any) -> Iterator[list[
         reader = getattr(error, "reader", "")
         yield transfer.packed({"error": str(error), "type": type(error).__name__, "reader": reader})
     except MemoryError:
-        yield transfer.packed({"error": f"{file}: asks for more memory than is allowed"})
+        yield transfer.packed({"error": f"{file}: asks for more memory than is allowed", "type": "MemoryError"})
     except Exception as error:
         said = " ".join(str(error).split())[:200] or type(error).__name__
         yield transfer.packed({"error": f"{file}: it cannot be read: {said}"})
@@ -148,13 +189,9 @@ def _streamed(file: Path, options: dict[str, Any], stream: Any) -> Iterator[list
     """First where each curve was taken, then the curves that are asked for, a line ``start stop`` each."""
     found = _reader("curves.stream")(file, importlib.import_module("nanotouch.curves").Calibration(**options))
     yield transfer.packed({"places": [found.place(number) for number in range(len(found))]})
-    line = b""
-    while byte := stream.read(1):
-        line += byte
-        if byte == b"\n":
-            start, stop = map(int, line.split())
-            yield transfer.packed([_or_error(found, number) for number in range(start, stop)])
-            line = b""
+    while line := _line(stream):
+        start, stop = map(int, line.split())
+        yield transfer.packed([_or_error(found, number) for number in range(start, stop)])
 
 
 def _or_error(found: Any, number: int) -> Any:

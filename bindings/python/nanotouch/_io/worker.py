@@ -25,7 +25,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, TypeVar, cast, get_args, get_origin
+from typing import Any, Protocol, TypeVar, cast, get_args, get_origin
 
 from nanotouch import guard
 from nanotouch._io import transfer
@@ -46,18 +46,26 @@ def ask(job: str, file: Path, options: dict[str, Any], expected: type[Answer], p
     request: dict[str, Any] = {"job": job, "file": str(file.absolute()), "options": options, "limits": asdict(limits)}
     kind = (get_args(expected) or (expected,))[0]
     request["written"] = limits.memory if _is_archive(file) else _PUT_ASIDE  # in the folder that is its own
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder, _lock:
-        request["folder"] = folder
-        try:
-            answer = _process().ask(request, file, (kind, *parts))
-        except _Gone:  # between two files: nothing is lost
-            answer = _process().ask(request, file, (kind, *parts))
+    with _lock:
+        answer = None if _series is None else _series.ask(request, file, (kind, *parts))
+        if answer is None:
+            answer = _alone(request, file, (kind, *parts))
     if isinstance(answer, dict) and "error" in answer:
         raise failure(answer, file)
     items = answer if get_origin(expected) is list and isinstance(answer, list) else [answer]
     if not all(isinstance(item, kind) for item in items):
         raise ReadError(f"{file}: the worker's answer is not what was asked for", "worker")
     return cast(Answer, answer)
+
+
+def _alone(request: dict[str, Any], file: Path, types: Sequence[type]) -> Any:
+    """The answer of a child for this file only."""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        request["folder"] = folder
+        try:
+            return _process().ask(request, file, types)
+        except _Gone:  # between two files: nothing is lost
+            return _process().ask(request, file, types)
 
 
 def check_system(file: Path) -> None:
@@ -137,7 +145,7 @@ class Process:
 
     def send(self, request: dict[str, Any], channel: int) -> None:
         """A request, whose answer comes through the channel."""
-        socket.send_fds(self.socket, [json.dumps(request).encode() + b"\n"], [channel])
+        socket.send_fds(self.socket, [line_of(request)], [channel])
 
     def status(self, deadline: float) -> int:
         """The exit status of the child."""
@@ -174,6 +182,11 @@ class Process:
         if problem is None and status == 0:
             return answer
         return {"error": f"{file}: {fate(status, limits, problem)}", "reader": "worker"}
+
+
+def line_of(request: dict[str, Any]) -> bytes:
+    """A request as it is sent."""
+    return json.dumps(request).encode() + b"\n"
 
 
 def _forked(theirs: socket.socket) -> int:
@@ -246,8 +259,28 @@ def fate(status: int, limits: guard.Limits, problem: Exception | None) -> str:
     return f"the worker gave no valid answer ({problem or f'exit status {status}'})"
 
 
+class Series(Protocol):
+    """One child for several files (:mod:`nanotouch._io.series`)."""
+
+    def ask(self, request: dict[str, Any], file: Path, types: Sequence[type]) -> Any:
+        """The answer; None where a child of its own is to read the file."""
+
+
 _lock = threading.Lock()
 _current: Process | None = None
+_series: Series | None = None
+
+
+def current_series() -> Series | None:
+    """The one that is asked first."""
+    return _series
+
+
+def enter(series: Series | None) -> None:
+    """Ask this one first from now on."""
+    global _series
+    with _lock:
+        _series = series
 
 
 def _process() -> Process:

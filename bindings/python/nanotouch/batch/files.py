@@ -15,6 +15,7 @@ import numpy as np
 
 import nanotouch
 
+from .._io import series
 from .._io.digest import file_digest
 from .._io.words import counted, printable
 from .._io.writing import replacing
@@ -138,17 +139,18 @@ def fit_files(
     }
     journal = Journal(_beside(out, "journal"), made_of)
     reused = 0
-    for number, file in enumerate(files):
-        sha256 = _digest(file)
-        key = {"sha256": sha256, "decisions": _decisions(decided, file)}
-        known = journal.entries.get(str(file))
-        if known is not None and all(known[name] == json.loads(json.dumps(value)) for name, value in key.items()):
-            reused += 1
-        else:
-            rows, pictures = _fitted((file, sha256), decided, reading, {"model": model, "tip": tip} | settings)
-            journal.add({"file": str(file), **key, "rows": rows, "pictures": pictures})
-        if progress:
-            progress((number + 1) / len(files))
+    with series.of(files):
+        for number, file in enumerate(files):
+            sha256 = _digest(file)
+            key = {"sha256": sha256, "decisions": _decisions(decided, file)}
+            known = journal.entries.get(str(file))
+            if known is not None and all(known[name] == json.loads(json.dumps(value)) for name, value in key.items()):
+                reused += 1
+            else:
+                rows, pictures = _fitted((file, sha256), decided, reading, {"model": model, "tip": tip} | settings)
+                journal.add({"file": str(file), **key, "rows": rows, "pictures": pictures})
+            if progress:
+                progress((number + 1) / len(files))
     entries = [journal.entries[str(file)] for file in files]
     rows = [
         row | {"group": label(Path(row["file"])), "sha256": entry["sha256"]}
