@@ -89,6 +89,7 @@ double nt_wall_look(nt_wall_clock *clock, double speed)
     const int64_t now = nt_clock_now();
     const double passed = 1e-9 * (double)(now - clock->last);
     clock->last = now;
+    clock->passed = passed;
     clock->due += speed * passed;
     const double lost = fmax(0.0, clock->due - speed * clock->lag);
     clock->due -= lost;

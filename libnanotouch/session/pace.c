@@ -167,7 +167,7 @@ static void run_wall(nt_session *session)
             continue;
         }
         atomic_store(&runner->slowdown, nt_wall_look(&clock, atomic_load(&runner->speed)));
-        const long done = run_ticks(session, due_ticks(session, &clock));
+        const long done = run_ticks(session, nt_wall_ticks(session, &clock, due_ticks(session, &clock)));
         if (done < 0)
             return;
         if (done == 0)

@@ -120,9 +120,9 @@ nt_status nt_session_sample(nt_session *session, uint64_t tick, nt_sample *sampl
 nt_status nt_session_write(nt_session *session, uint64_t tick, const nt_command *command)
 {
     nt_action action = {.size = sizeof action, .tick = tick, .time = session->time};
-    if (session->now->touch.rig.master.motor)
+    if (session->now->touch.rig.master.motor || !(session->master.capabilities.can & NT_CAN_PUSH))
         return nt_hal_command(&session->master, &session->slave, command, &action);
-    nt_command written = *command; /* a device that has a motor is not told to use it */
+    nt_command written = *command; /* a motor that the rig does not have is not driven */
     written.motor_force[NT_X] = written.motor_force[NT_Y] = written.motor_force[NT_Z] = 0.0;
     return nt_hal_command(&session->master, &session->slave, &written, &action);
 }

@@ -214,10 +214,12 @@ nt_frame nt_session_frame(const nt_session *session, const nt_record *record);
 void nt_session_keep_time(nt_session *session);
 /* Wall pace: time that a session owes its person, and how much slower than it should it goes. */
 typedef struct nt_wall_clock {
-    int64_t last; /* when it was looked at [ns] */
-    double lag;   /* the most that it may owe [s] */
-    double due;   /* session time that has to be run yet [s] */
-    double lost;  /* share of time that could not be run, lately [-] */
+    int64_t last;  /* when it was looked at [ns] */
+    double lag;    /* the most that it may owe [s] */
+    double due;    /* session time that has to be run yet [s] */
+    double lost;   /* share of time that could not be run, lately [-] */
+    double passed; /* between the last two looks [s] */
+    double waited; /* for a reading of the master that is late [s] */
 } nt_wall_clock;
 double nt_wall_longest_lag(const nt_session *session);
 /* More is due; how many times slower than `speed` the session goes. */
@@ -236,6 +238,10 @@ void nt_session_unlock(nt_session *session);
 nt_status nt_session_check_pace(const nt_session *session, nt_pace pace);
 /* Between two wake-ups [ns]. */
 int64_t nt_wall_wake(const nt_session *session);
+/* How many of these ticks that are due may be run: as many as the master's last reading is fresh for. A late one is
+ * waited for, at most for this long [s]: that slows the clock down, and stops nothing. */
+#define NT_WALL_PATIENCE 0.01
+long nt_wall_ticks(nt_session *session, nt_wall_clock *clock, long due);
 /* Before it starts at wall pace: measures how late this machine wakes up, and judges the loop with that. NT_E_RANGE
  * where the margin is too small. Some ten milliseconds. */
 nt_status nt_wall_judge(nt_session *session);

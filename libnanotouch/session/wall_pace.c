@@ -3,11 +3,16 @@
  * the hand is an actuator. Ticks are run in batches, one for each wake-up, and a machine wakes up late: a reading and a
  * force are held so much longer. To the loop that is a master that measures less often by both (sampled.c: its hold
  * counts on the way in and on the way out). */
+#include <limits.h>
 #include <math.h>
 
 #include "session/state.h"
 
 #define WAKE 1000000 /* at the most between two wake-ups [ns] */
+#define FRESH 2.0    /* of its periods a master's reading is fresh for; the supervisor holds then */
+#define OWN_STALL                                                                                                      \
+    2e-3 /* of the time between two looks no more counts as waiting for the master: this thread stood [s] */
+#define MOST_LOST 0.5 /* of the time: a master that is late so often is not waited for */
 
 enum { LOOKS = 60, COUNTED = 54 }; /* wake-ups that are measured; of these in order the one that counts */
 
@@ -53,6 +58,38 @@ nt_wall_pace nt_session_wall_pace(const nt_session *session)
     return found;
 }
 
+/* For how many more ticks the master's reading is fresh. On the machine's clock hardly any time passes in a batch. */
+static long fresh_ticks(const nt_session *session)
+{
+    const double period = session->now->touch.period;
+    const int64_t next = session->clock ? session->clock() : session->time + llround(1e9 * period);
+    const double left =
+        FRESH * session->now->touch.supervisor.master_period - 1e-9 * (double)(next - session->master.reading.time);
+    if (left < 0.0)
+        return 0;
+    return session->clock ? LONG_MAX : 1 + (long)(left / period);
+}
+
+/* It is gone, or bad, or somebody stops: ticks have to tell. */
+static int is_urgent(const nt_session *session)
+{
+    return atomic_load_explicit(&session->stop, memory_order_relaxed) != 0u ||
+           session->master.reading.flags & (NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_INVALID);
+}
+
+long nt_wall_ticks(nt_session *session, nt_wall_clock *clock, long due)
+{
+    if (!is_driven(session) || session->leader || due <= 0)
+        return due;
+    long fresh = fresh_ticks(session);
+    if (fresh < due && nt_hal_read(&session->master) == NT_OK)
+        fresh = fresh_ticks(session);
+    clock->waited = fresh > 0 ? 0.0 : clock->waited + fmin(clock->passed, OWN_STALL);
+    if (fresh > 0)
+        return fresh < due ? fresh : due;
+    return is_urgent(session) || clock->lost > MOST_LOST || clock->waited > NT_WALL_PATIENCE ? due : 0;
+}
+
 static double measured_latency(int64_t wake)
 {
     double late[LOOKS];
@@ -95,5 +132,7 @@ nt_motor_bound nt_session_motor_bound(const nt_session *session)
     const nt_wall_pace wall = nt_session_wall_pace(session);
     nt_rig rig = session->now->setup.rig;
     rig.converters.dac_latency += wall.hold + wall.latency;
+    if (is_driven(session) && !session->leader)
+        rig.converters.dac_latency += NT_WALL_PATIENCE; /* meanwhile the last force stays */
     return nt_motor_bound_compute(&rig, &session->now->setup.settings);
 }

@@ -14,6 +14,7 @@
 
 #include "larger.h"
 #include "nanotouch/hal_backend.h"
+#include "session/state.h"
 #include "session_fixture.h"
 
 /* A handle that stands still, read anew every millisecond; its force as it was last told. */
@@ -22,6 +23,8 @@ typedef struct handle {
     double period;
     int is_modest; /* it pushes, and does not say that it is real */
     atomic_int is_silent;
+    int64_t stall; /* it says nothing new for so long, once in each 20 ms of the machine's clock [ns] */
+    int stalls;    /* readings in which it did */
     int64_t time;
     uint64_t sequence;
 } handle;
@@ -41,11 +44,20 @@ static nt_status describe_handle(void *context, nt_capabilities *capabilities)
     return NT_OK;
 }
 
+static int64_t machine_now(void)
+{
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
 static nt_status read_handle(void *context, nt_reading *reading)
 {
     handle *h = context;
     const int64_t now = h->host->now(h->host);
-    if (h->sequence == 0 || (!atomic_load(&h->is_silent) && now - h->time >= llround(1e9 * h->period))) {
+    const int stalls = machine_now() % 20000000 < h->stall, is_silent = stalls || atomic_load(&h->is_silent);
+    h->stalls += stalls;
+    if (h->sequence == 0 || (!is_silent && now - h->time >= llround(1e9 * h->period))) {
         h->time = now;
         ++h->sequence;
     }
@@ -128,7 +140,7 @@ static void margin_counts_hold_and_latency(int is_modest)
     assert_true(fabs(wall.margin.margin - with) < 1e-9 * with && with < without);
     /* the force is held for so long, and that is in what is promised to the hand */
     const double delay = nt_motor_bound_compute(&setup.rig, &setup.settings).delay + wall.hold + wall.latency;
-    assert_true(fabs(nt_session_motor_bound(session).delay - delay) < 1e-12);
+    assert_true(fabs(nt_session_motor_bound(session).delay - delay - NT_WALL_PATIENCE) < 1e-12);
     nt_session_close(session);
     setup.minimum_margin = 0.999 * without; /* it opens, but not for this pace */
     session = open_session(&setup);
@@ -142,6 +154,27 @@ static void a_margin_counts_hold_and_latency(void **state)
     (void)state;
     margin_counts_hold_and_latency(0);
     margin_counts_hold_and_latency(1); /* as a device in Python or on the mailbox */
+}
+
+/* A master of 1 kHz that stalls for five of its periods in every twenty: not one tick holds, the clock waits. */
+static void a_late_reading_is_waited_for(void **state)
+{
+    (void)state;
+    handle h = {.period = 1e-3, .is_modest = 1, .stall = 5000000};
+    nt_session_setup setup = setup_on(&h);
+    nt_session *session = open_session(&setup);
+    assert_int_equal(nt_session_start(session, NT_PACE_WALL, 0), NT_OK);
+    long ticks = 0;
+    nt_record r;
+    while (ticks < 1000) {
+        pause_for(0.01);
+        for (; nt_session_read(session, &r, 1) == 1; ++ticks)
+            assert_int_equal(r.state, NT_RUN);
+    }
+    assert_true(nt_session_progress(session).slowdown > 1.0);
+    assert_int_equal(nt_session_halt(session), NT_OK);
+    assert_true(h.stalls > 2);
+    nt_session_close(session);
 }
 
 /* Silent for a while in the middle of it. */
@@ -178,6 +211,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_device_has_its_pace),
         cmocka_unit_test(a_margin_counts_hold_and_latency),
+        cmocka_unit_test(a_late_reading_is_waited_for),
         cmocka_unit_test(silence_takes_the_force_and_gives_it_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

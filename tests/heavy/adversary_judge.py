@@ -169,11 +169,10 @@ class Judge:
 
     def calm(self, session: Any, force: Any) -> None:
         """Of three windows of a hand that holds still: the ripple of the last is no more than that of the one before,
-        by 5 % and what the read-out shows of noise and steps."""
+        by 5 % and what noise and steps make of it, as is printed."""
         ripples = []
         for piece in np.array_split(force, 3):
             ticks = np.arange(len(piece)) / len(piece)
             ripples.append(float(np.ptp(piece - np.polyval(np.polyfit(ticks, piece, 2), ticks))))
-        probe = session.rig.probe
-        noise = float(probe.spring_constant * probe.sensitivity * (probe.noise + 2.0 * probe.resolution))
+        noise = session.calm().ripple / float(session.settings.gains.alpha_f)
         self._met("ripple", ripples[2], 1.05 * ripples[1] + noise, 0.0)
