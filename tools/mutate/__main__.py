@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which small faults the tests would not notice: `python tools/mutate c --count 400 --seed 1`.
+"""Which small faults the tests would not notice: `python tools/mutate c libnanotouch/control --count 200 --seed 1`.
 
-Draws mutants of the sources, builds one program per test with all of them behind switches, runs for each mutant the
-tests that pass through it, and reports those that no test kills. A mutant that changes no result is listed in
-equivalents.toml with the reason and does not count. Exits with 1 where a folder's killed fraction is below its floor.
+Builds one program per test with every mutant of the sources behind a switch, draws some of them by folder, runs for
+each the tests that pass through it until one fails, and reports those that survive. A mutant that changes no result is
+listed in equivalents.toml with the reason and does not count. A run of a test with a mutant is remembered until the
+program changes. Exits with 1 where a folder's killed fraction is below its floor.
 """
 
 from __future__ import annotations
@@ -11,16 +12,18 @@ from __future__ import annotations
 import argparse
 import os
 import random
+import re
 import sys
 import tomllib
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import c_build
 import python_build
 from c_source import Mutant
+from runs import Runs
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -32,38 +35,72 @@ class Build(Protocol):
     """A mutated build and its tests."""
 
     def mutants(self, paths: list[str]) -> list[Mutant]: ...
-    def make(self, chosen: dict[int, Mutant]) -> None: ...
+    def make(self, mutants: dict[int, Mutant]) -> None: ...
     def tests(self) -> list[str]: ...
-    def run(self, test: str, mutant: int, reached: Path | None, timeout: float) -> tuple[bool, float]: ...
+    def fingerprint(self, test: str) -> str: ...
+    def run(self, test: str, mutant: int, reached: Path | None, seconds: float | None) -> tuple[bool, float]: ...
 
 
-def baseline(build: Build, jobs: int) -> tuple[dict[int, list[str]], dict[str, float]]:
-    """Return for each mutant the tests that pass through it, the quickest first, and what each test takes [s]."""
+class Reach(NamedTuple):
+    """What the tests pass through without a mutant switched on."""
+
+    through: dict[int, list[str]]
+    """for each mutant the tests that reach it"""
+    times: dict[str, float]
+    """of each test that passes [s of processor time]"""
+
+
+def baseline(build: Build, jobs: int, slowest: float) -> Reach:
+    """Run every test without a mutant."""
     tests = build.tests()
     folder = ROOT / "build/mutate/reached"
     folder.mkdir(parents=True, exist_ok=True)
-    notes = {test: folder / test.replace("/", "_") for test in tests}
-    for note in notes.values():
-        note.unlink(missing_ok=True)
+    notes = {test: folder / f"{test.replace('/', '_')}-{build.fingerprint(test)[:16]}" for test in tests}
+
+    def run(test: str) -> tuple[bool, float]:
+        took = notes[test].with_suffix(".took")
+        if not took.exists():
+            notes[test].unlink(missing_ok=True)
+            passed, seconds = build.run(test, 0, notes[test], None)
+            took.write_text(f"{int(passed)} {seconds}")
+        words = took.read_text().split()
+        return words[0] == "1", float(words[1])
+
     with ThreadPoolExecutor(jobs) as pool:
-        results = dict(zip(tests, pool.map(lambda test: build.run(test, 0, notes[test], 900.0), tests), strict=True))
-    for test, (passed, _) in results.items():
-        if not passed:
-            print(f"left out, fails without a mutant: {test}")
-    times = {test: seconds for test, (passed, seconds) in results.items() if passed}
+        results = dict(zip(tests, pool.map(run, tests), strict=True))
+    for test, (passed, seconds) in results.items():
+        if not passed or seconds > slowest:
+            print(f"left out, {f'takes {seconds:.1f} s' if passed else 'fails without a mutant'}: {test}")
+    times = {test: seconds for test, (passed, seconds) in results.items() if passed and seconds <= slowest}
     through: dict[int, list[str]] = {}
     for test in sorted(times, key=times.__getitem__):
         if notes[test].exists():
             for number in {int(line) for line in notes[test].read_text().split()}:
                 through.setdefault(number, []).append(test)
-    return through, times
+    return Reach(through, times)
 
 
-def killer(build: Build, number: int, tests: list[str], times: dict[str, float]) -> str | None:
+def distance(test: str, path: str) -> int:
+    """Return how far a test is from a source: 0 for its own, 1 for its folder's, 2 for another's."""
+    parts = Path(path).with_suffix("").parts
+    if test.removeprefix("test_").removesuffix(".py").startswith((parts[-1], "_".join(parts[1:]))):
+        return 0
+    return 1 if f"test_{parts[1]}_" in test else 2
+
+
+def killer(build: Build, mutant: tuple[int, Mutant], reach: Reach, runs: Runs) -> str | None:
     """Return the first test that fails with this mutant; None: it survives all."""
-    for test in tests:
-        passed, _ = build.run(test, number, None, 10.0 + 5.0 * times[test])
+    number, (path, *_) = mutant
+    tests = sorted(reach.through.get(number, []), key=lambda test: (distance(test, path), reach.times[test]))
+    last = runs.killer_of(mutant[1].key)
+    for test in sorted(tests, key=lambda test: test != last):
+        print_of = build.fingerprint(test)
+        passed = runs.known(print_of, number)
+        if passed is None:
+            passed, _ = build.run(test, number, None, 1.0 + 4.0 * reach.times[test])
+            runs.note(print_of, number, passed)
         if not passed:
+            runs.note_killer(mutant[1].key, test)
             return test
     return None
 
@@ -94,30 +131,48 @@ def report(chosen: dict[int, Mutant], killed_by: dict[int, str | None], through:
     return below
 
 
+def drawn(everything: dict[int, Mutant], count: int, seed: int, pattern: str) -> dict[int, Mutant]:
+    """Return up to `count` mutants of every folder, without those that are listed as equivalent; 0: all of them."""
+    listed = tomllib.loads((HERE / "equivalents.toml").read_text())
+    known = {mutant.key for mutant in everything.values()}
+    paths = {mutant.path for mutant in everything.values()}
+    for key in listed:
+        if key.split(":")[0] in paths and key not in known:
+            print(f"listed as equivalent, but no longer there: {key}")
+    by_folder: dict[str, list[int]] = {}
+    for number, mutant in everything.items():
+        if re.search(pattern, mutant.key):
+            by_folder.setdefault(folder_of(mutant.path), []).append(number)
+    chosen = {}
+    for folder, numbers in sorted(by_folder.items()):
+        some = random.Random(f"{seed} {folder}").sample(numbers, min(count or len(numbers), len(numbers)))
+        kept = {number: everything[number] for number in sorted(some) if everything[number].key not in listed}
+        print(f"{folder}: {len(some)} of {len(numbers)} mutants, {len(some) - len(kept)} of them equivalent")
+        chosen |= kept
+    return chosen
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("language", choices=("c", "python"))
-    parser.add_argument("paths", nargs="*", help="files or folders to draw from; all by default")
-    parser.add_argument("--count", type=int, default=400, help="of mutants; 0: every one (%(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="of the sample (%(default)s)")
+    parser.add_argument("paths", nargs="*", help="files or folders to change; all by default")
+    parser.add_argument("--count", type=int, default=100, help="mutants of each folder; 0: every one (%(default)s)")
+    parser.add_argument("--seed", type=int, default=1, help="of the draw (%(default)s)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="tests at once (%(default)s)")
     parser.add_argument("--tests", default="", help="regular expression of the tests to run; all by default")
+    parser.add_argument("--of", default="", help="regular expression of the mutants to draw from; all by default")
+    parser.add_argument("--slowest", type=float, default=10.0, help="leave out slower tests [s] (%(default)s)")
     args = parser.parse_args()
     build: Build = (c_build.Build if args.language == "c" else python_build.Build)(ROOT, args.tests)
-    listed = tomllib.loads((HERE / "equivalents.toml").read_text())
-    everything = build.mutants(args.paths)
-    mutants = [mutant for mutant in everything if mutant.key not in listed]
-    if args.count and args.count < len(mutants):
-        mutants = random.Random(args.seed).sample(mutants, args.count)
-    chosen = dict(enumerate(mutants, 1))
-    print(f"{len(chosen)} of {len(everything)} mutants drawn, seed {args.seed}", flush=True)
-    build.make(chosen)
-    through, times = baseline(build, args.jobs)
-    with ThreadPoolExecutor(args.jobs) as pool:
-        numbers = list(chosen)
-        found = pool.map(lambda number: killer(build, number, through.get(number, []), times), numbers)
-        killed_by = dict(zip(numbers, found, strict=True))
-    return min(report(chosen, killed_by, through), 1)
+    everything = dict(enumerate(build.mutants(args.paths), 1))
+    chosen = drawn(everything, args.count, args.seed, args.of)
+    sys.stdout.flush()
+    build.make(everything)
+    reach = baseline(build, args.jobs, args.slowest)
+    with Runs(ROOT / f"build/mutate/runs-{args.language}") as runs, ThreadPoolExecutor(args.jobs) as pool:
+        found = pool.map(lambda item: killer(build, item, reach, runs), chosen.items())
+        killed_by = dict(zip(chosen, found, strict=True))
+    return min(report(chosen, killed_by, reach.through), 1)
 
 
 if __name__ == "__main__":

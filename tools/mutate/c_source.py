@@ -77,6 +77,8 @@ Change = tuple[int, int, str, bool]
 def _changes(cursor: cindex.Cursor, source: bytes) -> Iterator[Change]:
     """Yield start, end, new text and whether it is a whole statement, of all changes below a cursor."""
     for child in cursor.get_children():
+        if cursor.kind == cindex.CursorKind.COMPOUND_LITERAL_EXPR and child.kind in LITERALS:
+            continue  # the size of its type
         is_static = child.kind == cindex.CursorKind.VAR_DECL and child.storage_class == cindex.StorageClass.STATIC
         is_array = child.kind == cindex.CursorKind.VAR_DECL and "[" in child.type.spelling
         if child.kind in CONSTANT or is_static or is_array:

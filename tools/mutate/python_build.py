@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import importlib.util
 import os
 import re
@@ -35,7 +37,7 @@ class Build:
                 found += python_source.of_file(file, self.root)
         return found
 
-    def make(self, chosen: dict[int, Mutant]) -> None:
+    def make(self, mutants: dict[int, Mutant]) -> None:
         """Copy the package as it is installed, with the sources of this tree and these mutants in them."""
         shutil.rmtree(self.folder, ignore_errors=True)
         for package, source in PACKAGES.items():
@@ -52,7 +54,7 @@ class Build:
                 shutil.copy(self.root / name, target)
         shutil.copy(HERE / "nanotouch_mutants.py", self.folder)
         by_file: dict[str, dict[int, Mutant]] = {}
-        for number, mutant in chosen.items():
+        for number, mutant in mutants.items():
             by_file.setdefault(mutant.path, {})[number] = mutant
         for name, mutants in by_file.items():
             package, source = next((p, s) for p, s in PACKAGES.items() if name.startswith(s + "/"))
@@ -64,10 +66,22 @@ class Build:
         names = sorted(path.name for path in (self.root / "tests/python").glob("test_*.py"))
         return [name for name in names if self.pattern.search(name)]
 
-    def run(self, test: str, mutant: int, reached: Path | None, timeout: float) -> tuple[bool, float]:
-        """Run one test file with one mutant switched on; return whether it passed, and what it took [s]."""
+    @functools.cache  # noqa: B019  one build to a run
+    def fingerprint(self, test: str) -> str:
+        """Return what changes whenever the mutated package or the tests' modules do."""
+        found = hashlib.sha256()
+        for file in [*sorted(self.folder.rglob("*.py")), *self._shared(), self.root / "tests/python" / test]:
+            found.update(file.read_bytes())
+        return found.hexdigest()[:20]
+
+    def _shared(self) -> list[Path]:
+        found = sorted((self.root / "tests/python").glob("*.py"))
+        return [file for file in found if not file.name.startswith("test_")]
+
+    def run(self, test: str, mutant: int, reached: Path | None, seconds: float | None) -> tuple[bool, float]:
+        """Run one test file with one mutant switched on; return whether it passed, and its processor time [s]."""
         environment = dict(os.environ, NT_MUTANT=str(mutant), PYTHONPATH=str(self.folder))
         if reached:
             environment["NT_REACHED"] = str(reached)
         command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", f"tests/python/{test}"]
-        return run_quietly(command, environment, self.root, timeout)
+        return run_quietly(command, environment, self.root, seconds)

@@ -4,21 +4,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MUTANTS = 50000 };
-static int on;
-static unsigned char reached[MUTANTS];
+#include "switch.h"
 
-int mutant_is_on(int number);
-int mutant_is_on(int number)
-{
-    reached[number] = 1;
-    return on == number;
-}
+int mutant_on;
+unsigned char mutant_reached[MUTANTS];
 
 __attribute__((constructor)) static void choose(void)
 {
     const char *number = getenv("NT_MUTANT");
-    on = number ? atoi(number) : 0;
+    mutant_on = number ? atoi(number) : 0;
 }
 
 __attribute__((destructor)) static void report(void)
@@ -26,7 +20,7 @@ __attribute__((destructor)) static void report(void)
     const char *name = getenv("NT_REACHED");
     FILE *file = name ? fopen(name, "a") : NULL;
     for (int i = 0; file && i < MUTANTS; ++i)
-        if (reached[i])
+        if (mutant_reached[i])
             fprintf(file, "%d\n", i);
     if (file)
         fclose(file);

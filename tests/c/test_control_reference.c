@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Margins and calm of random rigs against loop_oracle.py, which builds the whole loop as one matrix. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "../reference/loop_table.h"
+#include "../reference/sideways_table.h"
+#include "nanotouch/margins.h"
+
+enum { CASES = sizeof loop_cases / sizeof loop_cases[0], STIFFNESS = sizeof loop_cases[0].in / sizeof(double) - 1 };
+
+static void compare(const char *kind, const char *name, double found, double expected, double tolerance)
+{
+    if (isnan(expected))
+        return; /* nothing to ask */
+    if (isinf(expected) ? isinf(found) : fabs(found / expected - 1.0) < tolerance)
+        return;
+    if (expected == 0.0 && found == 0.0)
+        return;
+    fail_msg("%s of %s: %.12g, expected %.12g", name, kind, found, expected);
+}
+
+#define COMPARE(row, found, name, tolerance) compare((row)->kind, #name, (found).name, (row)->name, tolerance)
+
+static void margins_are_those_of_the_whole_matrix(void **state)
+{
+    (void)state;
+    for (int i = 0; i < CASES; ++i) {
+        const loop_case *row = &loop_cases[i];
+        nt_rig rig = nt_rig_defaults();
+        nt_settings settings = nt_settings_defaults(&rig);
+        set_loop(row->in, &rig, &settings);
+        nt_margins found;
+        (void)nt_margins_judge(&rig, &settings, row->in[STIFFNESS], NT_MODE_TOUCH, &found);
+        COMPARE(row, found, loop_stiffness, 1e-12);
+        COMPARE(row, found, loop_delay, 1e-9); /* the notch's delay is a small difference of large numbers */
+        COMPARE(row, found, stability_limit, 1e-9);
+        COMPARE(row, found, margin, 1e-9);
+        COMPARE(row, found, pad_limit, 1e-9);
+        COMPARE(row, found, mass_limit, 1e-12);
+        COMPARE(row, found, quantisation_step, 1e-12);
+        COMPARE(row, found, force_noise, 1e-12);
+        COMPARE(row, found, height_margin, 1e-9);
+        COMPARE(row, found, exact_limit, 1e-6); /* a radius of 1 + 1e-10 was looked for */
+        COMPARE(row, found, force_gain_limit, 1e-6);
+        COMPARE(row, found, integral_limit, 1e-6);
+        COMPARE(row, found, coupling_margin, 1e-6);
+    }
+}
+
+static void calm_is_that_of_the_whole_matrix(void **state)
+{
+    (void)state;
+    for (int i = 0; i < CASES; ++i) {
+        const loop_case *row = &loop_cases[i];
+        nt_rig rig = nt_rig_defaults();
+        nt_settings settings = nt_settings_defaults(&rig);
+        set_loop(row->in, &rig, &settings);
+        const nt_calm found = nt_margins_calm(&rig, &settings, row->in[STIFFNESS]);
+        for (int part = 0; part < NT_RIPPLE_SOURCES; ++part)
+            compare(row->kind, "a part of the ripple", found.parts[part], row->calm.parts[part], 2e-2);
+        compare(row->kind, "ripple", found.ripple, row->calm.ripple,
+                2e-2); /* of an integral in steps of some per cent */
+        compare(row->kind, "ringing", found.ringing, row->calm.ringing, 2e-2);
+        compare(row->kind, "felt", found.felt, row->calm.felt, 1e-12);
+        compare(row->kind, "slewing", found.slewing, row->calm.slewing, 1e-9);
+        compare(row->kind, "margin", found.margin, row->calm.least, 2e-2);
+    }
+}
+
+/* Of a master of three axes; the rule along z is that of the margins. */
+static void sideways_margins_are_those_of_the_whole_matrix(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof sideways_cases / sizeof sideways_cases[0]; ++i) {
+        const sideways_case *row = &sideways_cases[i];
+        nt_rig rig = nt_rig_defaults();
+        nt_settings settings = nt_settings_defaults(&rig);
+        set_loop(row->in, &rig, &settings);
+        const double k = row->in[STIFFNESS], *in = &row->in[STIFFNESS + 1];
+        const nt_sideways_contact contact = {in[0], in[1], in[2], in[3], in[4]};
+        nt_margins along_z;
+        (void)nt_margins_judge(&rig, &settings, k, NT_MODE_TOUCH, &along_z);
+        const nt_sideways_margins found = nt_margins_sideways(&rig, &settings, k, &contact, &along_z);
+        COMPARE(row, found, loop_stiffness, 1e-12);
+        COMPARE(row, found, loop_delay, 1e-12);
+        COMPARE(row, found, margin, 1e-12);
+        COMPARE(row, found, exact_limit, 1e-6); /* a radius of 1 + 1e-10 was looked for */
+        COMPARE(row, found, exact_frequency, 1e-6);
+        COMPARE(row, found, coupling, 1e-9);
+        COMPARE(row, found, coupled_margin, 1e-6);
+        settings.gains.projection_x = 0.3;
+        settings.gains.projection_y = -0.4;
+        compare(row->kind, "projected", nt_margins_projected(&rig, &settings, k, &contact), row->projected, 1e-12);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sideways_margins_are_those_of_the_whole_matrix),
+        cmocka_unit_test(margins_are_those_of_the_whole_matrix),
+        cmocka_unit_test(calm_is_that_of_the_whole_matrix),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
