@@ -11,6 +11,7 @@
 
 #include "control/lift.h"
 #include "control/stuck.h"
+#include "larger.h"
 
 /* A force counts as grown by more than 1 N and 1 nm of the lever. */
 static nt_supervisor plain(void)
@@ -177,7 +178,7 @@ static void the_noise_that_is_learnt(void **unused)
         }
         const double sum = 49.0 * 1.0 + 1.5; /* the step from the first block into it */
         assert_true(fabs(stuck.noise - sum / (1.128379 * 50.0)) < 1e-12);
-        const double least = declared[i] < stuck.noise ? declared[i] : stuck.noise;
+        const double least = smaller(declared[i], stuck.noise);
         assert_true(fabs(stuck.band - 0.25 * least) < 1e-15);
         const nt_stuck learnt = stuck;
         nt_stuck_judge(&limits, &stuck, 100.0, position, 0);

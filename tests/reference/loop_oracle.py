@@ -36,13 +36,15 @@ NAMES = [f"{of}.{name}" for of, names in FIELDS.items() for name in names.split(
 DEFAULT, PAPER, IMPEDANCE = 0, 1, 2
 
 
+def logarithmic(random: Any) -> Any:
+    """Numbers between two, alike in each decade."""
+    return lambda low, high: float(np.exp(random.uniform(math.log(low), math.log(high))))
+
+
 def drawn(seed: int, kind: str) -> dict[str, float]:
     """A rig and gains at random; kind says what is special."""
     random = np.random.default_rng(seed)
-
-    def log(low: float, high: float) -> float:
-        return float(np.exp(random.uniform(math.log(low), math.log(high))))
-
+    log = logarithmic(random)
     f = dict.fromkeys(NAMES, 0.0)
     f |= {
         "rig.probe.spring_constant": log(1, 40), "rig.probe.sensitivity": log(1e-8, 1e-7),

@@ -120,9 +120,9 @@ def main() -> None:
         rule = np.array([[1.0 / margin, off], [off, 1.0 / z["margin"]]]) if by_z > 0.0 else \
             np.diag([1.0 / margin, 1.0 / z["margin"]])  # fmt: skip
         kappa, frequency = alone(p, hand)
-        coupled = 1.0 / float(np.linalg.eigvalsh(rule).max())
+        coupled = 1.0 / float(np.linalg.eigvalsh(rule)[-1])
         if by_z > 0.0:
-            coupled = min(coupled, together(p, hand, c))
+            coupled = float(np.minimum(coupled, together(p, hand, c)))
         found = (scale * lateral, delay, margin, kappa, frequency,
                  2.0 * rule[0, 1] / np.trace(rule), coupled, 1.0 + 0.5 * by_z / p.k_eff)  # fmt: skip
         values = ", ".join(loops.number(value) for value in [*(f[name] for name in loops.NAMES), *c.values()])
