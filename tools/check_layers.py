@@ -76,7 +76,7 @@ FOUND_BY_CMAKE = "fit/models/"
 # The modules and packages of the Python library from the bottom up; each may import what stands before it.
 PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
-    "what all need": "extras _core errors formats units guard _arrays _io",
+    "what all need": "extras _core errors formats units guard _arrays awaiting _io",
     "laws": "contact forces friction lateral",
     "objects": "manipulation plasticity",
     "measured": "images curves",

@@ -12,6 +12,7 @@ from typing import Any
 import nanotouch as nt
 from nanotouch import curves
 from nanotouch import fit as fitting
+from nanotouch.awaiting import awaited
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app import fit_many, output, scenes
@@ -118,7 +119,7 @@ def run(args: argparse.Namespace) -> int:
     curve = found[args.index]
     known = knowledge(args)
     with output.busy("fitting"):
-        result = fitting.fit_curve(curve, args.model, branch=args.branch, **known)
+        result = awaited(lambda: fitting.fit_curve(curve, args.model, branch=args.branch, **known))
     with output.folder(args, FILES) as out:
         args.answer = as_json(result)
         output.write_json(out / "fit.json", args.answer)

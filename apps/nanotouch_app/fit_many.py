@@ -5,14 +5,17 @@ from __future__ import annotations
 
 import argparse
 import glob
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from nanotouch import batch
+from nanotouch.awaiting import awaited
 from nanotouch.batch import methods, sheet
+from nanotouch.batch.journal import finished
 from nanotouch.errors import InvalidValue
 
-from nanotouch_app import output
+from nanotouch_app import output, stop
 
 
 def is_meant(args: argparse.Namespace) -> bool:
@@ -36,13 +39,13 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
     if not out.with_name(f"{out.name}.journal").exists():
         output.check_free(out, args)
     with output.made(out.parent) as folder:
-        with output.progress_bar("fit") as progress:
-            summary = batch.fit_files(
-                args.curve, out, args.model, sidecar=args.sidecar, reading=reading, progress=progress,
-                branch=args.branch, groups=args.groups, long=args.long, **knowledge,
-            )  # fmt: skip
-        sheets = sheet.draw(summary.pictures, folder, out.stem)
-        depths = _stabilities(args, summary, out, reading, knowledge) if args.stability else []
+        summary = fitted("fit", out, out, lambda progress: batch.fit_files(
+            args.curve, out, args.model, sidecar=args.sidecar, reading=reading, progress=progress,
+            branch=args.branch, groups=args.groups, long=args.long, **knowledge,
+        ))  # fmt: skip
+        with stop.keeping("the table is kept", out):
+            sheets = sheet.draw(summary.pictures, folder, out.stem)
+            depths = _stabilities(args, summary, out, reading, knowledge) if args.stability else []
     args.answer = {"table": str(out), "fitted": summary.count("ok"), "curves": summary.rows}
     print(summary)
     for found in summary.spreads:
@@ -59,13 +62,33 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
     return 0 if summary.fitted else 1
 
 
+def fitted(
+    title: str, out: Path, place: Path, fit: Callable[[Callable[[float], None]], batch.Summary]
+) -> batch.Summary:
+    """The fits of a table, under a bar. A signal ends them; what is finished is in the journal, from which a run with
+    this `place` for its results goes on."""
+    try:
+        with output.progress_bar(title) as progress:
+            return awaited(lambda: fit(progress))
+    except stop.Stopped as stopped:
+        journal = out.with_name(f"{out.name}.journal")
+        files = finished(journal)
+        if not files:
+            journal.unlink(missing_ok=True)
+            raise stop.Stopped(stopped.number, "no file was finished: nothing is kept") from None
+        kept = f"{files} {'file is' if files == 1 else 'files are'} kept in {journal}"
+        raise stop.Stopped(stopped.number, f"{kept}: --out {place} goes on from there") from None
+
+
 def _stabilities(
     args: argparse.Namespace, summary: batch.Summary, out: Path, reading: dict[str, Any], knowledge: dict[str, Any]
 ) -> list[Path]:
     """E(delta) of all fitted curves, as a table and a picture."""
     files = [out.with_name(f"{out.stem}-stability.{ending}") for ending in ("csv", "png")]
     with output.progress_bar("stability") as progress:
-        found = batch.stabilities(summary, sidecar=args.sidecar, reading=reading, progress=progress, **knowledge)
+        found = awaited(lambda: batch.stabilities(
+            summary, sidecar=args.sidecar, reading=reading, progress=progress, **knowledge
+        ))  # fmt: skip
     found.to_csv(files[0])
     found.draw(save=files[1])
     print(found)

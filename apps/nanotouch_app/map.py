@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 from nanotouch import maps
+from nanotouch.awaiting import awaited
 from nanotouch.errors import Error, require
 from nanotouch.fit.result import with_sigma
+from nanotouch.maps.store import finished
 
 from nanotouch_app import fit, output, stop
 from nanotouch_app.quantity import whole_number
@@ -48,8 +50,9 @@ def run(args: argparse.Namespace) -> int:
         if args.restart:
             _remove(blocks)
         data = _fitted(args, blocks)
-        maps.write(data, out / "map.nc")
-        maps.draw(data, save=out / "map.png")
+        with stop.keeping(f"the fits are kept, --out {out} goes on from them:", blocks):
+            awaited(lambda: maps.write(data, out / "map.nc"))
+            maps.draw(data, save=out / "map.png")
         summary = summarise(data)
         output.write_json(out / "map.json", summary)
         args.answer = summary | {"folder": str(out), "files": list(FILES)}
@@ -62,12 +65,21 @@ def run(args: argparse.Namespace) -> int:
 def _fitted(args: argparse.Namespace, blocks: Path) -> Any:
     try:
         with output.progress_bar("map") as progress:
-            return maps.fit(
+            return awaited(lambda: maps.fit(
                 args.file, args.model, cluster=args.cluster, resume=blocks, threads=args.threads, progress=progress,
                 branch=args.branch, sidecar=args.sidecar, **fit.reading(args), **fit.knowledge(args),
-            )  # fmt: skip
+            ))  # fmt: skip
     except stop.Stopped as stopped:
-        raise stop.Stopped(stopped.number, f"--out {blocks.parent} goes on from what is finished") from None
+        raise stop.Stopped(stopped.number, _kept(blocks)) from None
+
+
+def _kept(blocks: Path) -> str:
+    """Say how much of a map that has ended early is finished."""
+    curves = finished(blocks)
+    if not curves:
+        _remove(blocks)
+        return "no block of curves was finished: nothing is kept"
+    return f"{curves} {'curve is' if curves == 1 else 'curves are'} kept: --out {blocks.parent} goes on from them"
 
 
 def summarise(data: Any) -> dict[str, Any]:

@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 from nanotouch import manipulation
+from nanotouch.awaiting import awaited
 from nanotouch.errors import InvalidValue, require
 from nanotouch.manipulation.lever import give
 from nanotouch.plots import new_figure, saved
 from nanotouch.touch.record import write_csv
 from nanotouch.units import in_words
 
-from nanotouch_app import output
+from nanotouch_app import output, stop
 from nanotouch_app.quantity import parse_point, parse_quantity, whole_number
 
 FILES = ("push.csv", "push.json", "push.png")
@@ -52,17 +53,32 @@ def run(args: argparse.Namespace) -> int:
         )
     particle, lever = manipulation.latex(radius), None if args.lever is None else parse_lever(args.lever)
     with output.folder(args, FILES) as out:
-        with output.busy("pushing"):
-            done = manipulation.push(particle, target, bench=manipulation.Bench(drift=drift), tolerance=tolerance,
-                                     lever=lever, seed=args.seed)  # fmt: skip
+        so_far: list[manipulation.Pushed] = []
+        try:
+            with output.busy("pushing"):
+                done = awaited(lambda: manipulation.push(
+                    particle, target, bench=manipulation.Bench(drift=drift), tolerance=tolerance, lever=lever,
+                    seed=args.seed, progress=so_far.append,
+                ))  # fmt: skip
+        except stop.Stopped as stopped:
+            raise stop.Stopped(stopped.number, _kept(so_far, out / "push.csv")) from None
         facts = facts_of(done) | {"tolerance_m": tolerance}
         facts["lever_give_m"] = None if lever is None else give(lever, particle)
         write_track(done, out / "push.csv")
         output.write_json(out / "push.json", facts)
-        with output.picture():
+        with stop.keeping("all but the picture is", out), output.picture():
             draw(done, target, out / "push.png")
         args.answer = output.answered(out, FILES, facts, words(facts))
     return int(done.believed > tolerance)
+
+
+def _kept(so_far: list[manipulation.Pushed], path: Path) -> str:
+    """Write the way of a task that has ended early, and say how far it came."""
+    if not so_far:
+        return "before the end of the first push: nothing is kept"
+    write_track(so_far[-1], path)
+    pushes, left = so_far[-1].pushes, in_words(so_far[-1].believed, "m", 3)
+    return f"{pushes} {'push is' if pushes == 1 else 'pushes are'} kept in {path}, {left} from the target"
 
 
 def parse_lever(text: str) -> manipulation.Lever:

@@ -11,7 +11,7 @@ from nanotouch import batch
 from nanotouch.batch import methods, sheet
 from nanotouch.errors import InvalidValue
 
-from nanotouch_app import fit, output
+from nanotouch_app import fit, fit_many, output, stop
 
 FILES = ("report.html", "results.csv", "results.csv.json")
 JOURNAL = "results.csv.journal"
@@ -42,12 +42,13 @@ def run(args: argparse.Namespace) -> int:
             (out / JOURNAL).unlink(missing_ok=True)
         folders = list(dict.fromkeys(found for folder in named for found in _folders(folder, out)))
         groups = args.groups or (batch.FOLDER if len(folders) > 1 else None)
-        with output.progress_bar("report") as progress:
-            summary = batch.fit_files(
-                folders, out / "results.csv", args.model, sidecar=args.sidecar, reading=reading, progress=progress,
-                groups=groups, long=args.long, branch=args.branch, **known,
-            )  # fmt: skip
-        sheets = sheet.draw(summary.pictures, out, "results", most=10)
+        table = out / "results.csv"
+        summary = fit_many.fitted("report", table, out, lambda progress: batch.fit_files(
+            folders, table, args.model, sidecar=args.sidecar, reading=reading, progress=progress,
+            groups=groups, long=args.long, branch=args.branch, **known,
+        ))  # fmt: skip
+        with stop.keeping("the table is kept", table):
+            sheets = sheet.draw(summary.pictures, out, "results", most=10)
         settings = {"model": args.model, "branch": args.branch} | known
         title = f"Force curves of {', '.join(folder.resolve().name for folder in named)}"
         batch.write_report(out / "report.html", summary, title=title, settings=settings, reading=reading, sheets=sheets)

@@ -14,6 +14,7 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import images, scan
+from nanotouch.awaiting import awaited
 from nanotouch.errors import DeviceError, InvalidValue, MissingExtra, require
 from nanotouch.plots import new_figure, saved
 from nanotouch.units import in_words
@@ -69,14 +70,15 @@ def run(args: argparse.Namespace) -> int:
     scene, rig, tables = scenes.read(args.scene if args.scene else _preset(args.what))
     is_real = scan_rig.is_named(args) and not args.forecast
     with output.busy("reading the surface"):
-        surface = _surface(args, scene, tables)
+        surface = awaited(lambda: _surface(args, scene, tables))
     print("".join(f"{note}\n" for note in (() if surface is None else surface.notes)), end="")
     if is_real:
         return _on_rig(args, scene, tables, surface)
-    plan = _plan(scene, surface, tables)
-    scanner = _scanner(args, plan, rig, tables, surface)
+    with output.busy("planning"):
+        plan = awaited(lambda: _plan(scene, surface, tables))
+        scanner = awaited(lambda: _scanner(args, plan, rig, tables, surface))
     with output.busy("forecasting"):
-        told = scan.forecast(scanner, scene, surface)
+        told = awaited(lambda: scan.forecast(scanner, scene, surface))
     accuracy = _accuracy(args.steady, scanner)
     duration = scanner.scan["raster.lines"] / scanner.scan["raster.line_rate"]
     output.say(told)

@@ -33,6 +33,15 @@ def on_signals() -> Iterator[None]:
 
 
 @contextmanager
+def keeping(what: str, place: object) -> Iterator[None]:
+    """Say where what is done already is kept, if a signal ends what follows."""
+    try:
+        yield
+    except Stopped as stopped:
+        raise Stopped(stopped.number, f"{what} in {place}") from None
+
+
+@contextmanager
 def asked() -> Iterator[list[int]]:
     """The signals that came, for what ends by itself and keeps what it has. A second one does not wait."""
     came: list[int] = []

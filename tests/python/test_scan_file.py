@@ -6,8 +6,6 @@ from __future__ import annotations
 import math
 import os
 import signal
-import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,7 +15,6 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import images
-from nanotouch.scan import scanner
 from nanotouch.units import in_words
 from nanotouch_app import output
 from nanotouch_app.main import main
@@ -128,25 +125,6 @@ def test_a_scan_in_time_that_is_ended_keeps_its_lines() -> None:
     assert 1 <= lines < 60
     whole = made.run()
     np.testing.assert_array_equal(part.retrace.height, whole.retrace.height[:lines])
-
-
-def test_a_scan_ends_while_a_strip_is_computed() -> None:
-    """What the compiled code has in hand, here 5 s of it, is not waited for; the lines before are kept."""
-    computes, told = threading.Event(), []
-
-    def work(number: int) -> int:
-        if number == 2:
-            computes.wait(5.0)
-        return number
-
-    def waits(done: int) -> bool:
-        return done < 2
-
-    start = time.monotonic()
-    assert scanner._each(work, range(9), lambda _, number: told.append(number), waits, 2) == 2
-    assert time.monotonic() - start < 3.0
-    assert told == [0, 1]
-    computes.set()
 
 
 def session_and_scan() -> tuple[nt.Session, nt.Scan]:

@@ -88,7 +88,7 @@ def test_maps_that_do_not_fit_are_refused() -> None:
 def test_all_the_way(tmp_path: Path) -> None:
     """Maps show a sphere within twice the way v/K_I < 9 nm that the loop lags, the target is met within the operator's
     30 nm and what it cannot see, and the map follows as well as it looks. ``test_examples`` runs the command."""
-    done = steps.work(48, 1)
+    done = steps.work(48, 1, lambda name, found: workflow.WRITERS[name](found, tmp_path / workflow.FILE_OF[name]))
     facts = done.facts()
     assert facts["map_error_m"] < 18e-9
     assert facts["map_error_again_m"] < 18e-9
@@ -96,7 +96,6 @@ def test_all_the_way(tmp_path: Path) -> None:
     assert facts["predicted_error_m"] < 10e-9
     assert facts["shown_error_m"] < 50e-9
     assert 0.0 < facts["largest_push_N"] < 10e-9 < facts["largest_force_N"] < 200e-9
-    workflow.write(done, tmp_path)
     assert images.read(tmp_path / "predicted.gwy").height_range == pytest.approx(500e-9, abs=10e-9)
     assert len(nt.record.read(tmp_path / "touch.mcap")) > 1000
     header, *rows = [line for line in (tmp_path / "push.csv").read_text().splitlines() if not line.startswith("#")]

@@ -5,13 +5,15 @@ scan again. What each step found is told beside the truth."""
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from nanotouch import images, record
+from nanotouch.awaiting import awaited
 from nanotouch.errors import InvalidValue, require
 
-from nanotouch_app import output
+from nanotouch_app import output, stop
 from nanotouch_app.push import write_track
 from nanotouch_app.quantity import whole_number
 from nanotouch_app.studies.workflow import film, steps
@@ -38,27 +40,44 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValue(f"--pixels {args.pixels}: valid is 48 .. 512")
     require("matplotlib", "app")
     with output.folder(args, FILES) as out:
-        with output.busy("scanning, touching, pushing, scanning again"):
-            done = steps.work(args.pixels, args.seed)
+        kept: list[str] = []
+
+        def keep(name: str, found: Any) -> None:
+            WRITERS[name](found, out / FILE_OF[name])
+            kept.append(FILE_OF[name])
+
+        try:
+            with output.busy("scanning, touching, pushing, scanning again"):
+                done = awaited(lambda: steps.work(args.pixels, args.seed, keep))
+        except stop.Stopped as stopped:
+            told = "nothing is kept"
+            if kept:
+                verb = "is" if len(kept) == 1 else "are"
+                told = f"{', '.join(kept)}: {len(kept)} of {len(WRITERS)} files {verb} kept in {out}"
+            raise stop.Stopped(stopped.number, told) from None
         facts = done.facts()
-        write(done, out)
-        with output.progress_bar("filming") as progress:
-            film.write(done, out / "workflow.gif", progress)
         output.write_json(out / "workflow.json", facts)
+        with stop.keeping("all but the film is", out), output.progress_bar("filming") as progress:
+            film.write(done, out / "workflow.gif", progress)
         args.answer = facts | {"folder": str(out), "files": list(FILES)}
         output.say(words(facts))
         output.say(f"written to {out}/: {', '.join(FILES)}")
     return 0
 
 
-def write(done: steps.Work, out: Path) -> None:
-    """What each step leaves for the next, and for other programs."""
-    tip = images.RoundedCone(steps.scene().tip.radius, steps.scene().tip.half_angle)
-    done.first.image.write(out / "scan.gwy", tip)
-    done.again.image.write(out / "again.gwy", tip)
-    images.write(out / "predicted.gwy", done.predicted)
-    record.write(out / "touch.mcap", done.touched.recording)
-    write_track(done.pushed, out / "push.csv")
+def _write_scan(found: steps.Scanned, path: Path) -> None:
+    found.image.write(path, images.RoundedCone(steps.scene().tip.radius, steps.scene().tip.half_angle))
+
+
+WRITERS: dict[str, Callable[[Any, Path], object]] = {
+    "first": _write_scan,
+    "touched": lambda found, path: record.write(path, found.recording),
+    "pushed": write_track,
+    "predicted": lambda found, path: images.write(path, found),
+    "again": _write_scan,
+}
+"""what each step leaves for the next, and for other programs"""
+FILE_OF = dict(zip(WRITERS, FILES, strict=False))
 
 
 def words(facts: dict[str, float]) -> str:

@@ -4,7 +4,8 @@ showed; the truth is kept beside, to judge by."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
 
 import nanotouch as nt
 import numpy as np
@@ -21,6 +22,9 @@ PIXEL_RATE = 2.0  # of the scan, there and back [1/s]
 WORK = 0.01  # of adhesion between tip and sphere [J/m^2]: a coated tip; with more it drags them back
 
 HAMAKER = 1e-20  # through that coating [J]
+
+
+Found = TypeVar("Found")
 
 
 class Scanned(NamedTuple):
@@ -139,14 +143,21 @@ class Work(NamedTuple):
         return float(self.pushed.position[0]), float(self.pushed.position[1])
 
 
-def work(pixels: int, seed: int) -> Work:
-    """All steps, one after another."""
-    first = scanned(list(TRUE), pixels, seed)
+def work(pixels: int, seed: int, kept: Callable[[str, Any], None] = lambda *_: None) -> Work:
+    """All steps, one after another; `kept` is given what each finds, with its name in :class:`Work`."""
+
+    def told(name: str, found: Found) -> Found:
+        kept(name, found)
+        return found
+
+    first = told("first", scanned(list(TRUE), pixels, seed))
     number = nearest(first, TRUE[0])
-    felt, done = touched(first, number, seed), pushed(first, number, seed)
+    felt = told("touched", touched(first, number, seed))
+    done = told("pushed", pushed(first, number, seed))
     believed, true = done.looks[-1], done.position
     predicted = images.moved(first.surface, first.particles, number, (float(believed[0]), float(believed[1])))
-    again = scanned([(float(true[0]), float(true[1])), *TRUE[1:]], pixels, seed + 1)
+    told("predicted", predicted)
+    again = told("again", scanned([(float(true[0]), float(true[1])), *TRUE[1:]], pixels, seed + 1))
     return Work(first, number, felt, done, predicted, again)
 
 

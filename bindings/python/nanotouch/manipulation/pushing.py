@@ -7,7 +7,7 @@ has drifted that nobody moves. In between, its map follows the tip.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import permutations
 from typing import NamedTuple
@@ -205,6 +205,7 @@ def push(
     lever: Lever | None = None,
     most: int = 200,
     seed: int = 0,
+    progress: Callable[[Pushed], None] | None = None,
 ) -> Pushed:
     """Push a particle to a target, until a look shows it there.
 
@@ -228,6 +229,8 @@ def push(
         Pushes before it gives up; `believed` is then above the tolerance.
     seed : int
         Of noise and drift.
+    progress : callable, optional
+        Called after each push with what is done so far.
 
     Raises
     ------
@@ -244,7 +247,8 @@ def push(
     laid = Particles(particle, lever=needed(lever, particle, min(tolerance, longest)))
     world = world_of(World, laid, bench or Bench(), [start], seed)
     mark = np.array([start[0], start[1] - 10.0 * particle.radius])
-    return Operator(world, mark, np.array(target), longest).work(seen or start, tolerance, most)
+    operator = Operator(world, mark, np.array(target), longest)
+    return operator.work(seen or start, tolerance, most, progress)
 
 
 def world_of(
@@ -267,12 +271,19 @@ class Operator:
     ahead: Floats = field(default_factory=lambda: np.zeros(2))
     drift: Floats = field(default_factory=lambda: np.zeros(2))
 
-    def work(self, seen: tuple[float, float], tolerance: float, most: int) -> Pushed:
-        world, begun = self.world, (self.world.lines, self.world.time, len(self.world.rows))
+    def work(
+        self,
+        seen: tuple[float, float],
+        tolerance: float,
+        most: int,
+        progress: Callable[[Pushed], None] | None = None,
+    ) -> Pushed:
+        world = self.world
+        begun = world.lines, world.time, len(world.rows)
         drift = self.drift_of(self.drift)
         found = self._find(np.array(seen) + drift)
         looks, pushes = [found - drift], 0
-        while (left := float(np.linalg.norm(self.target - looks[-1]))) > tolerance and pushes < most:
+        while float(np.linalg.norm(self.target - looks[-1])) > tolerance and pushes < most:
             self._push(found, drift)
             guess = found + self._wanted(found - drift) - self.ahead
             pushes += 1
@@ -280,9 +291,17 @@ class Operator:
             found = self._find(guess)
             self._learn(looks[-1], found - drift)
             looks.append(found - drift)
+            if progress is not None:
+                progress(self._done(begun, looks, pushes))
         self.drift = drift
+        return self._done(begun, looks, pushes)
+
+    def _done(self, begun: tuple[int, float, int], looks: list[Floats], pushes: int) -> Pushed:
+        """What has come of it since lines, time and rows were these."""
+        world = self.world
         position = world.place
         error = float(np.linalg.norm(position - self.target))
+        left = float(np.linalg.norm(looks[-1] - self.target))
         spun = float(world.laid.run(*world.state.base, state=world.state).turned[-1, world.number, 2])
         lines, duration = world.lines - begun[0], world.time - begun[1]
         return Pushed(position, error, left, pushes, lines, duration, np.array(looks), spun, world.track(begun[2]))

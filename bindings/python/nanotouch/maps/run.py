@@ -24,7 +24,7 @@ from .settings import Settings
 from .store import BlockStore, Columns
 from .volume import Volume, blocks_of, volume_of
 
-BLOCK_CURVES = 256
+BLOCK_CURVES = 64
 IN_FLIGHT = 2  # blocks for each thread of a cluster: one at work, one at hand
 LOCAL = "local"
 

@@ -85,3 +85,12 @@ def _differences(found: Any, wanted: Any, path: str = "") -> str:
         keys = sorted(key for key in found.keys() | wanted.keys() if found.get(key) != wanted.get(key))
         return ", ".join(_differences(found.get(key), wanted.get(key), f"{path}.{key}".lstrip(".")) for key in keys)
     return f"{path} ({str(found)[:40]} there, {str(wanted)[:40]} here)"
+
+
+def finished(folder: str | os.PathLike[str]) -> int:
+    """Curves in the blocks that a run has left there."""
+    count = 0
+    for file in Path(folder).glob("block-*.npz"):
+        with np.load(file, allow_pickle=False) as block:
+            count += int(block["status"].size)
+    return count

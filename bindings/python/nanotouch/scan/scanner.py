@@ -5,16 +5,16 @@ phase, through the rig's stage."""
 from __future__ import annotations
 
 import os
-import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from nanotouch import _core
 from nanotouch._arrays import Floats
+from nanotouch.awaiting import each
 from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.scan.steady import check_accuracy
 from nanotouch.scan.tapping import Drive, Lever
@@ -33,9 +33,6 @@ STRIP = 64
 """lines that follow one coming down of the tip; strips go to the cores, with the same result on any number of them"""
 
 
-ASKED_EVERY = 0.1  # whether a scan is to end [s]
-
-Result = TypeVar("Result")
 Progress = Callable[[float], bool | None]
 """told the share that is done; False ends what goes on"""
 
@@ -120,56 +117,6 @@ class Image(NamedTuple):
             undone = self.without_tip(tip).heights
             planes.append(Plane(UNDONE, undone, "m", self.pixel_size, "nanotouch/scan"))
         return write_planes(path, planes)
-
-
-def _each(
-    work: Callable[[int], Result], items: range, kept: Callable[[int, Result], bool | None],
-    waits: Callable[[int], bool | None], threads: int | None,
-) -> int:  # fmt: skip
-    """Work on the cores; results are told in their order, with their number. False, or what that raises, ends the
-    rest. How many were told.
-
-    While one is awaited ``waits`` is asked, with how many were told, and may end it likewise. What the compiled code
-    has in hand then is not waited for: it may take a minute."""
-    found: dict[int, Result | BaseException] = {}
-    left: list[bool] = []
-    todo, arrived = iter(items), threading.Condition()
-
-    def labor() -> None:
-        while not left:
-            with arrived:
-                number = next(todo, None)
-            if number is None:
-                return
-            try:
-                result: Result | BaseException = work(number)
-            except BaseException as error:
-                result = error
-            with arrived:
-                found[number] = result
-                arrived.notify()
-
-    for _ in range(min(threads or os.cpu_count() or 1, len(items))):
-        threading.Thread(target=labor, daemon=True).start()
-    try:
-        for told, number in enumerate(items):
-            while not _has(found, number, arrived):
-                if waits(told) is False:
-                    return told
-            result = found.pop(number)
-            if isinstance(result, BaseException):
-                raise result
-            if kept(told, result) is False:
-                return told + 1
-    finally:
-        left.append(True)
-    return len(items)
-
-
-def _has(found: Mapping[int, Any], number: int, arrived: threading.Condition) -> bool:
-    """Whether it has arrived, after a short wait."""
-    with arrived:
-        return arrived.wait_for(lambda: number in found, ASKED_EVERY)
 
 
 def _whole(lines: Sequence[int]) -> int:
@@ -277,7 +224,7 @@ class Scanner(Lever):
             return None if progress is None else progress(sum(state.lines for state in states) / lines)
 
         try:
-            _each(strip, range(len(starts)), lambda done, _: waits(done), waits, threads)
+            each(strip, range(len(starts)), lambda done, _: waits(done), waits, threads)
             done = _whole([state.lines for state in states])
         finally:
             for state in states:
@@ -332,7 +279,7 @@ class Scanner(Lever):
         def waits(done: int) -> bool | None:
             return None if progress is None else progress(done / lines)
 
-        done = out[:, : _each(take, range(lines), kept, waits, threads)]
+        done = out[:, : each(take, range(lines), kept, waits, threads)]
         return self._image(np.stack([done, done]))
 
     def _image(self, out: Floats) -> Image:
