@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jpk_headers import Channel, Properties, Slot, header, segment, series, shared
+from jpk_headers import Channel, Properties, Slot, header, prefixed, segment, series, shared
 from made import Array, Curve, Curves, Lever, Made, Part, Random, chosen, lever, motion
 
 FORMAT = "JPK curves"
@@ -33,6 +33,7 @@ GRID = {
     "time beside": [False, True],
     "default": ["as chained", "volts"],
     "offset": [0.0, 1.0],
+    "units": ["SI", "mV nm nN"],
 }
 NAMES = {"a": "approach", "r": "retract", "h": "hold", "p": "pause", "m": "modulation"}
 ENDINGS = {"curve": "jpk-force", "map": "jpk-force-map", "QI map": "jpk-qi-data", "QI series": "jpk-qi-series"}
@@ -42,6 +43,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     c = _consistent(chosen(random, GRID, plain))
     held = lever(random)
     channels = _channels(random, c, held)
+    told = [prefixed(channel) for channel in channels] if c["units"] != "SI" else channels
     points = [(NAMES[s], int(random.integers(40, 90))) for s in c["segments"].replace(" longer", "").split()]
     if c["segments"] == "a r longer":
         points[1] = ("retract", 3 * points[0][1])
@@ -65,16 +67,14 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
         for number, (role, z, bend, duration) in enumerate(segments):
             column, part = _columns(c, channels, held, role, z, bend, duration)
             place = f"{path}segments/{number}/"
-            archive[f"{place}segment-header.properties"] = segment(
-                c, channels, number, role, len(z), duration, setpoint
-            )
+            archive[f"{place}segment-header.properties"] = segment(c, told, number, role, len(z), duration, setpoint)
             archive |= {f"{place}channels/{name}.dat": data for name, data in column.items()}
             if role != "modulation":
                 parts.append(part)
         where = _place(index, grid, c["back and forth"]) if many else None
         curves.append(_curve(parts, held, setpoint, where))
     if c["version"] == "2.0":
-        archive["shared-data/header.properties"] = shared(c, channels, points, segments, setpoint)
+        archive["shared-data/header.properties"] = shared(c, told, points, segments, setpoint)
     file = folder / f"curve.{ENDINGS[c['kind']]}"
     _zip(file, archive, zipfile.ZIP_DEFLATED if c["packed"] == "deflated" else zipfile.ZIP_STORED)
     return Made(FORMAT, file, c, Curves(tuple(curves)), given=_given(c, held), told=_told(c))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -57,6 +57,29 @@ class Channel:
         for slot in self.slots:
             back = back * slot.multiplier + slot.offset
         return data.tobytes(), back
+
+
+def prefixed(channel: Channel) -> Channel:
+    """The same in mV, nm and nN: what is stored, and what it means, stays."""
+    per = {"V": 1e3, "m": 1e9, "N": 1e9}
+    names = {"V": "mV", "m": "nm", "N": "nN"}
+    is_float = channel.stored == "float"
+    before = 1.0 if is_float else per[channel.unit]
+    slots = []
+    for slot in channel.slots:
+        after = per[slot.unit]
+        slots.append(Slot(slot.name, slot.multiplier * after / before, slot.offset * after, names[slot.unit]))
+        before = after
+    if is_float:
+        return replace(channel, slots=tuple(slots))
+    base = per[channel.unit]
+    return replace(
+        channel,
+        multiplier=channel.multiplier * base,
+        offset=channel.offset * base,
+        unit=names[channel.unit],
+        slots=tuple(slots),
+    )
 
 
 def header(c: Properties, grid: tuple[int, int], count: int) -> Properties:

@@ -161,6 +161,60 @@ def test_the_work_grows_as_the_number_of_curves(tmp_path: Path) -> None:
     assert calls[1] < 4.05 * calls[0]
 
 
+def edited(tmp_path: Path, *pairs: tuple[bytes, bytes]) -> Path:
+    """The single curve with other words in the headers of its segments."""
+    path = tmp_path / "edited.jpk-force"
+    with zipfile.ZipFile(single(tmp_path / "whole.jpk-force")) as whole, zipfile.ZipFile(path, "w") as other:
+        for item in whole.infolist():
+            content = whole.read(item)
+            for old, new in pairs if item.filename.endswith("segment-header.properties") else ():
+                assert old in content
+                content = content.replace(old, new)
+            other.writestr(item, content)
+    return path
+
+
+DISTANCE, FORCE = (b"channel.vDeflection.conversion-set.conversion." + name for name in (b"distance.", b"force."))
+
+
+def test_units_of_conversions_count(tmp_path: Path) -> None:
+    """6e-8 m/V is 60 nm/V, and 0.8 N/m is 0.8 nN/nm."""
+    pairs = [
+        (DISTANCE + b"scaling.multiplier=6e-08", DISTANCE + b"scaling.multiplier=60.0"),
+        (DISTANCE + b"scaling.unit.unit=m", DISTANCE + b"scaling.unit.unit=nm"),
+        (FORCE + b"scaling.unit.unit=N", FORCE + b"scaling.unit.unit=nN"),
+    ]
+    (curve,), (plain,) = curves.read(edited(tmp_path, *pairs)), curves.read(edited(tmp_path))
+    assert curve.meta["sensitivity"] == pytest.approx(6e-8)
+    assert curve.meta["spring constant"] == pytest.approx(0.8)
+    np.testing.assert_allclose(curve.segments[0].force, plain.segments[0].force, rtol=1e-12)  # type: ignore[arg-type]
+    with pytest.raises(ReadError, match=r"force\.scaling\.unit is 'K', expected N with or without a prefix"):
+        curves.read(edited(tmp_path, (FORCE + b"scaling.unit.unit=N", FORCE + b"scaling.unit.unit=K")))
+
+
+def test_what_a_header_says_twice_or_not_in_full_is_told(tmp_path: Path) -> None:
+    twice = (FORCE + b"base", FORCE + b"scaling.multiplier=0.9\n" + FORCE + b"base")
+    with pytest.raises(ReadError, match=r"multiplier' as '0\.9' and as '0\.8'"):
+        curves.read(edited(tmp_path, twice))
+    with pytest.raises(ReadError, match="force is converted from 'volts', expected 'distance'"):
+        curves.read(
+            edited(tmp_path, (FORCE + b"base-calibration-slot=distance", FORCE + b"base-calibration-slot=volts"))
+        )
+    (curve,) = curves.read(edited(tmp_path, (FORCE + b"scaling.offset=0.0", FORCE + b"scaling.offset=1e-9")))
+    assert "an offset of the force of 1 nN is left out" in curve.meta["notes"][0]
+
+
+def test_a_retraction_alone_is_read_and_told(tmp_path: Path) -> None:
+    path = tmp_path / "half.jpk-force"
+    with zipfile.ZipFile(single(tmp_path / "whole.jpk-force")) as whole, zipfile.ZipFile(path, "w") as half:
+        for item in whole.infolist():
+            if not item.filename.startswith("segments/0/"):
+                half.writestr(item, whole.read(item))
+    (curve,) = curves.read(path)
+    assert [segment.role for segment in curve.segments] == ["retract"]
+    assert curve.meta["notes"] == ("segment 0 is not in the archive",)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

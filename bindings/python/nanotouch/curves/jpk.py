@@ -31,12 +31,10 @@ from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS
 from .curve import ForceCurve, Role, Segment
+from .jpk_properties import FLOATS, TYPES, Facts, Properties, as_number, grouped, segments_of
 
 NAME = "nanotouch/jpk"
 ENDINGS = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
-_TYPES = {"signedshort": ">i2", "unsignedshort": ">u2", "signedinteger": ">i4", "unsignedinteger": ">u4",
-          "signedlong": ">i8"}  # fmt: skip
-_FLOATS = {"float-data": ">f4", "double-data": ">f8", "float": ">f4", "double": ">f8"}
 #: Channel in the archive, slot, and column under afmformats' name; a sensor before a voltage times a constant.
 HEIGHTS = (
     ("measuredHeight", "nominal", "height (measured)"),
@@ -51,8 +49,6 @@ _GRID = {"center x": "xcenter", "center y": "ycenter", "shape x": "ilength", "sh
          "size x": "ulength", "size y": "vlength"}  # fmt: skip
 _MAX_PROPERTIES = 1 << 24  # of one file of properties [byte]; those seen have 40 KiB
 _SETTINGS = "force-segment-header.settings."
-
-Properties = dict[str, str]
 
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
@@ -87,8 +83,9 @@ class Archive:
             self._names = set(self._zip.namelist())
             self._general = self._properties("header.properties")
             shared = "shared-data/header.properties"
-            self._shared = _grouped(self._properties(shared) if shared in self._names else {})
+            self._shared = grouped(self._properties(shared) if shared in self._names else {})
             self._folders = self._find_folders()
+            self._segments = segments_of(self._names)
         except BaseException:
             self._zip.close()
             raise
@@ -114,22 +111,26 @@ class Archive:
             "software": "JPK",
             "format": f"JPK ({self.file.suffix.lower()})",
         }
-        start, count = 0.0, 0
+        start = 0.0
         left_out: Counter[str] = Counter()
-        while f"{folder}segments/{count}/segment-header.properties" in self._names:
-            place = f"{folder}segments/{count}/"
-            facts = _Facts(self.file, place, own | self._expanded(place) | self._general)
+        numbers = self._segments.get(folder, [])
+        for number in numbers:
+            place = f"{folder}segments/{number}/"
+            facts = Facts(self.file, place, own | self._expanded(place) | self._general)
             style, duration = facts.text(f"{_SETTINGS}style"), facts.number("force-segment-header.duration")
             if style in ROLES:
                 segments.append(self._segment(facts, place, start, meta))
             else:
                 left_out[style] += 1
-            start, count = start + duration, count + 1
+            start += duration
         if not segments:
             styles = f" of style {', '.join(ROLES)}, only {', '.join(left_out)}" if left_out else ""
             raise ReadError(f"{self.file}: curve {enum} has no segments{styles}")
-        if left_out:
-            meta["notes"] = tuple(f"{counted(n, 'segment')} of style {s!r} left out" for s, n in left_out.items())
+        told = [f"{counted(n, 'segment')} of style {s!r} left out" for s, n in left_out.items()]
+        told += [f"segment {n} is not in the archive" for n in range(max(numbers)) if n not in numbers]
+        meta["notes"] = (*meta.get("notes", ()), *told)
+        if not meta["notes"]:
+            del meta["notes"]
         meta |= {"duration": start, "segment count": len(segments), "point count": sum(len(s) for s in segments)}
         return ForceCurve(tuple(segments), meta, printable(self.file.name))
 
@@ -154,11 +155,13 @@ class Archive:
             raise ReadError(f"{self.file}: the archive lacks {name}")
         if self._zip.getinfo(name).file_size > _MAX_PROPERTIES:
             raise ReadError(f"{self.file}: {name} is longer than {_MAX_PROPERTIES >> 20} MiB")
-        found = {}
+        found: Properties = {}
         for line in self._zip.read(name).decode("latin-1").splitlines():
             if line and line[0] not in "#!":
                 key, _, value = line.partition("=")
-                found[key] = value.replace("\\", "") if "\\" in value else value
+                value = value.replace("\\", "") if "\\" in value else value
+                if found.setdefault(key, value) != value:
+                    raise ReadError(f"{self.file}: {name} states {key!r} as {found[key]!r} and as {value!r}")
         return found
 
     def _expanded(self, place: str) -> Properties:
@@ -170,12 +173,12 @@ class Archive:
                 found.setdefault(f"{head}.{rest}", value)
         return found
 
-    def _segment(self, facts: _Facts, place: str, start: float, meta: dict[str, Any]) -> Segment:
+    def _segment(self, facts: Facts, place: str, start: float, meta: dict[str, Any]) -> Segment:
         role = ROLES[facts.text(f"{_SETTINGS}style")]
         duration = facts.number("force-segment-header.duration")
         channel, slot, column = self._height(place)
-        z = facts.converted(channel, slot, self._raw(facts, place, channel))
-        volts = facts.converted("vDeflection", "volts", self._raw(facts, place, "vDeflection"))
+        z = facts.converted(channel, slot, self._raw(facts, place, channel), "m")
+        volts = facts.converted("vDeflection", "volts", self._raw(facts, place, "vDeflection"), "V")
         deflection, stiffness = self._calibrated(facts, volts, meta)
         stated = facts.number("force-segment-header.num-points")
         if not z.size == volts.size == stated:
@@ -183,13 +186,21 @@ class Archive:
         _note(meta, facts, role, z.size)
         time = np.asarray(start + np.arange(z.size) * (duration / max(z.size, 1)), np.float64)
         force = np.asarray(deflection * stiffness, np.float64)
+        if stated_offset := facts.offset("force", "N"):
+            told = (
+                f"an offset of the force of {1e9 * stated_offset:.4g} nN is left out: a force is k times the deflection"
+            )
+            meta["notes"] = tuple(dict.fromkeys((*meta.get("notes", ()), told)))
         return Segment(role, time, z, column, force, deflection)
 
     def _calibrated(
-        self, facts: _Facts, volts: NDArray[np.float64], meta: dict[str, Any]
+        self, facts: Facts, volts: NDArray[np.float64], meta: dict[str, Any]
     ) -> tuple[NDArray[np.float64], float]:
         """Deflection and spring constant, by what the file states or by what is given in its place."""
-        stated = {"spring constant": facts.multiplier("force"), "sensitivity": facts.multiplier("distance")}
+        stated = {
+            "spring constant": facts.multiplier("force", "N", "distance", "m"),
+            "sensitivity": facts.multiplier("distance", "m", "volts", "V"),
+        }
         missing = [key for key, value in stated.items() if value is None and self._given[key] is None]
         if missing:
             raise ReadError(f"{self.file}: states no {' and no '.join(missing)}; give it")
@@ -197,7 +208,7 @@ class Archive:
             value = self._given[key] if value is None else value
             if meta.setdefault(key, value) != value:
                 raise ReadError(f"{self.file}: states two values of its {key}, {meta[key]:g} and {value:g}")
-        offset = 0.0 if stated["sensitivity"] is None else facts.offset("distance")
+        offset = 0.0 if stated["sensitivity"] is None else facts.offset("distance", "m")
         return volts * meta["sensitivity"] + offset, float(meta["spring constant"])
 
     def _height(self, place: str) -> tuple[str, str, str]:
@@ -206,95 +217,19 @@ class Archive:
                 return channel, slot, column
         raise ReadError(f"{self.file}: {place} has no height")
 
-    def _raw(self, facts: _Facts, place: str, channel: str) -> NDArray[Any]:
+    def _raw(self, facts: Facts, place: str, channel: str) -> NDArray[Any]:
         name = f"{place}channels/{channel}.dat"
         kind = facts.number_type(channel)
-        if name not in self._names or kind not in _TYPES | _FLOATS:
+        if name not in self._names or kind not in TYPES | FLOATS:
             raise ReadError(f"{self.file}: {name} is missing, or of the type {kind!r}, which is not read")
         raw = self._zip.read(name)
-        dtype = np.dtype((_TYPES | _FLOATS)[kind])
+        dtype = np.dtype((TYPES | FLOATS)[kind])
         if len(raw) % dtype.itemsize:
             raise ReadError(f"{self.file}: {name} has {len(raw)} bytes, no whole number of {kind!r}")
         return np.frombuffer(raw, dtype)
 
 
-class _Facts:
-    """The properties of one segment."""
-
-    def __init__(self, file: Path, place: str, properties: Mapping[str, str]) -> None:
-        self.file, self.place, self.properties = file, place, properties
-
-    def text(self, key: str) -> str:
-        if key not in self.properties:
-            raise ReadError(f"{self.file}: {self.place} lacks {key!r}")
-        return self.properties[key]
-
-    def either(self, key: str, other: str) -> str:
-        return self.properties[key] if key in self.properties else self.text(other)
-
-    def number(self, key: str, other: str = "") -> float:
-        value = _number(self.either(key, other or key))
-        if value is None:
-            raise ReadError(f"{self.file}: {self.place}: {key!r} is {self.either(key, other or key)!r}, no number")
-        return value
-
-    def number_type(self, channel: str) -> str:
-        """Of the encoder; of the data where there is none, as in float data."""
-        for key in (f"channel.{channel}.data.encoder.type", f"channel.{channel}.encoder.type",
-                    f"channel.{channel}.data.type", f"channel.{channel}.type"):  # fmt: skip
-            if key in self.properties:
-                return self.properties[key]
-        return self.text(f"channel.{channel}.data.encoder.type")
-
-    def converted(self, channel: str, slot: str, raw: NDArray[Any]) -> NDArray[np.float64]:
-        """The integers in the unit of `slot`: what leads from the base to it, and before that the encoder."""
-        encoder, other = f"channel.{channel}.data.encoder.scaling.", f"channel.{channel}.encoder.scaling."
-        conversions = f"channel.{channel}.conversion-set."
-        base = self.text(f"{conversions}conversions.base")
-        steps: list[str] = []
-        while slot != base and slot != "volts":
-            if len(steps) > 8:
-                raise ReadError(f"{self.file}: {self.place}: the conversions of {channel} go round")
-            steps.append(f"{conversions}conversion.{slot}.")
-            slot = self.text(f"{steps[-1]}base-calibration-slot")
-        if self.number_type(channel) in _FLOATS:
-            values = raw.astype(np.float64)
-        else:
-            values = raw * self.number(f"{encoder}multiplier", f"{other}multiplier")
-            values += self.number(f"{encoder}offset", f"{other}offset")
-        for step in reversed(steps):
-            values *= self.number(f"{step}scaling.multiplier")
-            values += self.number(f"{step}scaling.offset")
-        return np.asarray(values, np.float64)
-
-    def multiplier(self, slot: str) -> float | None:
-        """Of a conversion of the deflection; None where the file is not calibrated."""
-        key = f"channel.vDeflection.conversion-set.conversion.{slot}.scaling.multiplier"
-        return self.number(key) if key in self.properties else None
-
-    def offset(self, slot: str) -> float:
-        return self.number(f"channel.vDeflection.conversion-set.conversion.{slot}.scaling.offset")
-
-
-def _number(text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
-
-
-def _grouped(shared: Properties) -> dict[tuple[str, str], Properties]:
-    """``lcd-info.0.unit=V`` as ``[("lcd-info", "0")]["unit"] = "V"``."""
-    groups: dict[tuple[str, str], Properties] = {}
-    for key, value in shared.items():
-        kind, _, rest = key.partition(".")
-        number, _, rest = rest.partition(".")
-        groups.setdefault((kind, number), {})[rest] = value
-    return groups
-
-
-def _note(meta: dict[str, Any], facts: _Facts, role: Role, points: int) -> None:
+def _note(meta: dict[str, Any], facts: Facts, role: Role, points: int) -> None:
     """What a segment says of itself and of the curve, under afmformats' keys."""
     told = facts.properties
     for key, name in (("feedback mode", f"{_SETTINGS}feedback-mode.name"),
@@ -305,7 +240,7 @@ def _note(meta: dict[str, Any], facts: _Facts, role: Role, points: int) -> None:
     if role == "approach" and len(stamp) > 1:
         meta.setdefault("date", stamp[0])
         meta.setdefault("time", stamp[1])
-    numbers = {key: _number(told.get(f"{_SETTINGS}segment-settings.{key}", "")) for key in
+    numbers = {key: as_number(told.get(f"{_SETTINGS}segment-settings.{key}", "")) for key in
                ("duration", "z-start", "z-end", "setpoint")}  # fmt: skip
     duration = numbers["duration"]
     if duration:
@@ -325,11 +260,11 @@ def _note_place(meta: dict[str, Any], told: Mapping[str, str], kind: str) -> Non
         if f"{kind}.description.{name}" in told:
             meta.setdefault(key, told[f"{kind}.description.{name}"])
     for key, name in _GRID.items():
-        value = _number(told.get(f"{kind}.position-pattern.grid.{name}", ""))
+        value = as_number(told.get(f"{kind}.position-pattern.grid.{name}", ""))
         if value is not None:
             meta.setdefault(f"grid {key}", round(value) if key.startswith("shape") else value)
     for axis in "xy":
-        value = _number(told.get(f"{kind}.header.position.{axis}", ""))
+        value = as_number(told.get(f"{kind}.header.position.{axis}", ""))
         if value is not None:
             meta.setdefault(f"position {axis}", value)
         size, shape = meta.get(f"grid size {axis}", 0.0), meta.get(f"grid shape {axis}", 0)
