@@ -25,6 +25,7 @@ GRID = {
     "square": [True, False],
     "trailing gap": [False, True],
     "empty lines": [0, 1],
+    "padding": ["none", "NULs", "end mark of DOS"],
     "ending": ["txt", "asc", "csv", "dat"],
 }
 UNITS = {"m": 1.0, "\xb5m": 1e-6, "um": 1e-6, "nm": 1e-9, "\xc5": 1e-10, "A": 1e-10}
@@ -63,6 +64,8 @@ def _consistent(c: dict[str, Any]) -> dict[str, Any]:
         c["vertical"] = {"\xb5m": "um", "\xc5": "A"}.get(c["vertical"], c["vertical"])
     elif c["head"] == "free comment":
         c["vertical"] = {"\xb5m": "um", "\xc5": "A"}.get(c["vertical"], c["vertical"])
+    if c["encoding"] == "utf-16":
+        c["padding"] = "none"
     return c | {"mark": c["mark"] and c["encoding"] == "utf-8"}
 
 
@@ -92,4 +95,5 @@ def _file(c: dict[str, Any], text: list[list[str]], size: tuple[float, float]) -
         words = head.replace(".", ",") + c["vertical"] + c["ends"] + rest
     if c["encoding"] == "shift-jis":
         words = words.replace("\xb5", "\u03bc")  # Shift-JIS has the Greek letter only
-    return words.encode("utf-8-sig" if c["mark"] else c["encoding"])
+    padding = {"none": b"", "NULs": bytes(512), "end mark of DOS": b"\x1a"}[c["padding"]]
+    return words.encode("utf-8-sig" if c["mark"] else c["encoding"]) + padding

@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 _ROW = re.compile(r"[-+\d.,;\seE]+|(?i:[-+\d.,;\se]|nan|bad|inf(?:inity)?)+")
+_WITH_COMMA = re.compile(
+    r"(?P<head>[^\d]*[:=]\s*[-+]?)(?P<before>\d+),(?P<after>\d+)(?P<tail>(?:[eE][-+]?\d+)?\s*[^\d\s,.]*)\s*"
+)
 _LOOKED_AT = 200  # rows
 _SHIFT_JIS_MICRO = "\x83\xca"  # as latin-1
 
@@ -29,6 +32,11 @@ def is_text(raw: bytes) -> bool:
     if any(raw.startswith(mark) for mark, _ in _MARKS):
         return True
     return not re.search(rb"[\x00-\x08\x0e-\x1f]", raw)
+
+
+def without_padding(raw: bytes) -> bytes:
+    """Without what fills a file up to its block, NULs or the end mark of DOS; bytes of UTF-16 are none."""
+    return raw if any(raw.startswith(mark) for mark, _ in _MARKS[1:]) else raw.rstrip(b"\0\x1a")
 
 
 def decoded(raw: bytes) -> str:
@@ -55,7 +63,7 @@ def plain(text: str) -> str:
     NotATable
         If points and commas cannot be told apart.
     """
-    lines = text.splitlines()
+    lines = text.replace("\u2212", "-").splitlines()  # a minus of typography
     sample = [line for line in lines if is_row(line)][:_LOOKED_AT]
     comma = _is_decimal("\n".join(sample))
     cells = ";" if any(";" in line for line in sample) else "\t" if any("\t" in line for line in sample) else ""
@@ -96,4 +104,12 @@ def _row(line: str, comma: bool, cells: str) -> str:
 
 
 def _words(line: str, comma: bool) -> str:
-    return re.sub(r"(?<=\d),(?=\d)", ".", line) if comma else line
+    """A line of a header. Where no row tells what a comma is, one before other than three digits is a decimal one."""
+    if comma:
+        return re.sub(r"(?<=\d),(?=\d)", ".", line)
+    stated = _WITH_COMMA.fullmatch(line)
+    if stated is None:
+        return line
+    if len(stated["after"]) == 3 and stated["before"] != "0":
+        raise NotATable(f"{line.strip()!r}: its comma may be a decimal one, or between thousands")
+    return f"{stated['head']}{stated['before']}.{stated['after']}{stated['tail']}"

@@ -86,6 +86,8 @@ def _opened(file: Path) -> Iterator[Any]:
         if reader is None or reader.format() in _CREDULOUS:
             raise ReadError(f"{file}: not an AFM image in any format that {NAME} recognises by content")
         with reader, guarded(file, f"{NAME}/{reader.format()}"):
+            if reader.format() in ("asc", "xyz"):
+                text_table.check_text(file)
             yield reader
 
 
