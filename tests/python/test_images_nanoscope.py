@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -134,6 +136,34 @@ def test_data_that_end_early_for_no_reason_are_refused(tmp_path: Path) -> None:
     path.write_bytes(path.read_bytes().replace(b"Data length: 2048", b"Data length: 1024"))
     with pytest.raises(ReadError, match="1024 bytes of data, but its header states 2048"):
         images.read(path)
+
+
+@pytest.mark.parametrize(
+    ("changed", "note"),
+    [({"samples": "16"}, "states 16 x 32 pixels, but its data are 32 x 32, as the scan"),
+     ({"samples": "64"}, "states 64 x 32 pixels, but its data are 32 x 32, as the scan"),
+     ({"lines": 16}, "states 32 x 16 pixels, but its data are 32 x 32, as the scan")],
+)  # fmt: skip
+def test_pixels_that_the_data_do_not_hold_are_those_of_the_scan(
+    tmp_path: Path, changed: dict[str, Any], note: str
+) -> None:
+    one = picture(NX)
+    path = write(tmp_path / "a.spm", replace(one, **changed), scan=(f"Lines: {NX}", "Aspect Ratio: 1:1"))
+    read = images.read(path)
+    np.testing.assert_allclose(read.heights, metres(one), rtol=1e-12)
+    assert read.size == pytest.approx((8e-6, 8e-6))
+    assert read.notes == (f"it {note}",)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [({"samples": "32 64"}, "'Samps/line' is '32 64', expected one whole number"),
+     ({"width": 4}, "2048 bytes of data are not 32 lines of 32 samples of 4 bytes"),
+     ({"scale": "V [Sens. Zsens] (0.0000610352 V/LSB) -4 V"}, "states no range")],
+)  # fmt: skip
+def test_what_contradicts_the_data_is_refused(tmp_path: Path, changed: dict[str, Any], words: str) -> None:
+    with pytest.raises(ReadError, match=re.escape(words)):
+        images.read(write(tmp_path / "a.spm", replace(picture(NX), **changed), scan=(f"Lines: {NX}",)))
 
 
 def test_lines_that_were_not_measured_are_left_out(tmp_path: Path) -> None:

@@ -167,7 +167,7 @@ def _scale(sections: list[Section], one: Section, name: str) -> tuple[float, str
         raise ReadError(f"{one.file}: its header lacks a 'Z scale' with a unit (versions before 4.3 have none)")
     stated = _SCALE.fullmatch(one[keys[0]])
     full = float(stated["number"]) if stated and header.is_number(stated["number"]) else np.nan
-    if stated is None or not (np.isfinite(full) and full != 0.0):
+    if stated is None or not (np.isfinite(full) and full > 0.0):
         raise ReadError(f"{one.file}: 'Z scale' is {one[keys[0]]!r}, which states no range")
     per_count = full / 256.0 ** one.counts("Bytes/pixel")[0] if "bytes/pixel" in one else full / 65536.0
     unit = header.plain_unit(stated["unit"])
@@ -183,7 +183,7 @@ def _soft(sections: list[Section], soft: str, unit: str, name: str) -> tuple[flo
     file = sections[0].file
     known = header.stated_everywhere(sections, f"@{soft}")
     match = _SENSITIVITY.fullmatch(known[0]) if known else None
-    if match is None or not header.is_number(match["number"]):
+    if match is None or not (header.is_number(match["number"]) and float(match["number"]) > 0.0):
         raise ReadError(f"{file}: its header does not say what {soft!r} is, the scale of its values")
     notes = () if len(known) == 1 else (f"the header states {soft!r} as {' and as '.join(known)}: the first is taken",)
     value, top = float(match["number"]), header.plain_unit(match["unit"])

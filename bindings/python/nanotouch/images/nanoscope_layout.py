@@ -63,31 +63,49 @@ class Layout:
 
 def layout_of(file: Path, sections: list[Section], scan: Section, one: Section) -> Layout:
     """Of the channel that this section describes; ReadError where its data are not there."""
-    nx, stated = one.counts("Samps/line")[0], one.counts("Number of lines")[0]
-    offset, length = one.counts("Data offset")[0], one.counts("Data length")[0]
+    nx, stated = _single(one, "Samps/line"), _single(one, "Number of lines")
+    offset, length = _single(one, "Data offset"), _single(one, "Data length")
     if not (nx and stated and length):
         raise ReadError(f"{file}: it states {nx} samples, {stated} lines and {length} bytes of data: it is empty")
     held = file.stat().st_size
     if offset + length > held:
         raise ReadError(f"{file}: {held} bytes long, but its data end at {offset + length}: it is cut off")
-    if offset < sections[0].header_end:
-        raise ReadError(
-            f"{file}: its data are to begin at {offset}, inside of the header ({sections[0].header_end} bytes)"
-        )
+    head = max(sections[0].header_end, _count(sections[0], "data length"))
+    if offset < head:
+        raise ReadError(f"{file}: its data are to begin at {offset}, inside of the header ({head} bytes)")
     notes = _overlaps(sections, one, offset, length)
     width = _width(file, sections, one, nx * stated)
-    global_nx, global_lines = (_count(scan, key) for key in ("samps/line", "lines"))
-    by_scan = bool(global_nx and length % (nx * width) and length == global_nx * global_lines * width)
     scale = 1.0
-    if by_scan:
-        notes.append(f"it states {nx} x {stated} pixels, but its data are the scan's {global_nx} x {global_lines}")
-        scale = 1.0 if _same_size(scan, one) else global_nx / nx
-        nx, stated = global_nx, global_lines
-    lines = _lines(file, sections, one, (nx, stated, width), notes)
+    other = _other_pixels(scan, one, (nx, stated), length // width)
+    if other is not None:
+        notes.append(f"it states {nx} x {stated} pixels, but its data are {other[0]} x {other[1]}, as the scan")
+        scale = 1.0 if _same_size(scan, one) else other[0] / nx
+        nx, stated = other
+    lines = _lines(file, (sections, scan, one), (nx, stated, width), notes)
     rows, columns = _measured(one, (lines, nx), notes)
     sides = _Sides.of(scan, one, (nx, stated, lines), scale)
     pixel_size = sides.pixel_size(notes)
     return Layout(offset, width, (lines, nx), rows, columns, pixel_size, tuple(notes))
+
+
+def _single(one: Section, key: str) -> int:
+    """A whole number that is stated once, or as often as it is stated."""
+    found = one.counts(key)
+    if len(set(found)) > 1:
+        raise ReadError(f"{one.file}: {key!r} is {one.text(key)!r}, expected one whole number")
+    return found[0]
+
+
+def _other_pixels(scan: Section, one: Section, stated: tuple[int, int], held: int) -> tuple[int, int] | None:
+    """Samples and lines of the scan, or the valid ones, where the data hold these and not the channel's."""
+    nx, lines = stated
+    if held == nx * lines:
+        return None
+    whole, valid = _count(scan, "samps/line"), _count(one, "valid data len x")
+    others = ((whole, lines), (whole, _count(scan, "lines")), (valid, lines))
+    found = (other for other in others if other[0] not in (0, nx) and other[0] * other[1] == held)
+    same_scan = whole == nx and held == nx * _count(scan, "lines")
+    return (nx, _count(scan, "lines")) if same_scan else next(found, None)
 
 
 def _overlaps(sections: list[Section], one: Section, offset: int, length: int) -> list[str]:
@@ -113,39 +131,50 @@ def _width(file: Path, sections: list[Section], one: Section, pixels: int) -> in
     width = _count(one, "bytes/pixel") or 2
     if width not in (2, 4):
         raise ReadError(f"{file}: {width} bytes per value; 2 and 4 are read")
-    if header.version(sections) < _VERSION_32BIT or width == 4:
-        return width
     length = one.counts("Data length")[0]
+    if width == 4 or (header.version(sections) < _VERSION_32BIT and length != 4 * pixels):
+        return width
     if length >= 4 * pixels:
-        return 4
+        return 4 if header.version(sections) >= _VERSION_32BIT or _is_sign(file, one) else 2
     if length != 2 * pixels:
         return 4
-    # Half as long as four bytes would be: two bytes, or half the lines. In four bytes the upper half is a sign.
-    high = np.fromfile(file, "<i2", length // 2, offset=one.counts("Data offset")[0])[1::2]
-    return 4 if bool(((high == 0) | (high == -1)).all()) else 2
+    return 4 if _is_sign(file, one) else 2  # half as long as four bytes would be: two bytes, or half the lines
 
 
-def _lines(file: Path, sections: list[Section], one: Section, told: tuple[int, int, int], notes: list[str]) -> int:
-    """How many are read: those that the data hold, where the data are whole."""
-    nx, stated, width = told
+def _is_sign(file: Path, one: Section) -> bool:
+    """Whether the values take four bytes of which the upper half is a sign."""
+    length, offset = one.counts("Data length")[0], one.counts("Data offset")[0]
+    high = np.fromfile(file, "<i2", length // 2, offset=offset)[1::2]
+    return bool(((high == 0) | (high == -1)).all())
+
+
+def _lines(
+    file: Path, told: tuple[list[Section], Section, Section], stated: tuple[int, int, int], notes: list[str]
+) -> int:
+    """How many are read: those that the data hold, where the data are whole and nothing speaks against it."""
+    (sections, scan, one), (nx, lines, width) = told, stated
     offset, length = one.counts("Data offset")[0], one.counts("Data length")[0]
     held, rest = divmod(length, nx * width)
-    if held == stated and not rest:
-        return stated
+    if held == lines and not rest:
+        return lines
     others = {other.counts("Data offset")[0] for other in sections if "data offset" in other}
     whole = not rest and (offset + length in others or file.stat().st_size - offset - length < nx * width)
-    if held < stated:
-        if not whole or held == 0:
-            raise ReadError(
-                f"{file}: {length} bytes of data, but its header states {nx * stated * width}: it is cut off or damaged"
-            )
-        notes.append(f"it states {stated} lines, but its data hold {held}, which are read")
-        return held
     valid = _count(one, "valid data start y") + _count(one, "valid data len y")
-    if whole and valid in (0, held):
-        notes.append(f"it states {stated} lines, but its data hold {held}, which are read")
+    if held < lines and not (whole and held):
+        raise ReadError(
+            f"{file}: {length} bytes of data, but its header states {nx * lines * width}: it is cut off or damaged"
+        )
+    halved = width == 4 and length == 2 * nx * lines and not _is_sign(file, one)  # or values of two bytes
+    if whole and (valid == held or not (halved or valid == lines)):
+        notes.append(f"it states {lines} lines, but its data hold {held}, which are read")
         return held
-    return stated
+    if held > lines and valid in (0, lines) and nx == _count(scan, "samps/line"):
+        notes.append(f"{length - nx * lines * width} bytes of its data lie behind the last line and are left out")
+        return lines
+    raise ReadError(
+        f"{file}: {length} bytes of data are not {lines} lines of {nx} samples of {width} bytes, as its header states: "
+        "one of these numbers is wrong"
+    )
 
 
 def _measured(one: Section, stored: tuple[int, int], notes: list[str]) -> tuple[slice, slice]:
@@ -181,6 +210,7 @@ class _Sides:
     scan_lines: int
     aspect: float  # width over height
     scan_aspect: float
+    is_square: bool  # is stated
 
     @classmethod
     def of(cls, scan: Section, one: Section, counts: tuple[int, int, int], scale: float) -> _Sides:
@@ -198,6 +228,7 @@ class _Sides:
         return cls(
             scale * size[0], scale * (size[1] or 0.0), slow[0] if slow and same else 0.0, scan_width,
             nx, stated, _count(scan, "lines"), aspect or 1.0, scan_aspect or 1.0,
+            aspect == 1.0,
         )  # fmt: skip
 
     def pixel_size(self, notes: list[str]) -> tuple[float, float]:
@@ -209,9 +240,13 @@ class _Sides:
                 f"but scan size [m] {self.scan_width:.6g}"
             )
         candidates = list(self._candidates(dx))
-        if self.aspect == 1.0:
-            return candidates[0], dx
         expected = self.width / self.aspect
+        if self.aspect == 1.0:
+            if self.is_square and self.height and abs(self.height - expected) > _AGREE * expected:
+                notes.append(
+                    f"its header contradicts itself: height [m] {self.height:.6g}, but by its aspect [m] {expected:.6g}"
+                )
+            return candidates[0], dx
         for dy in candidates:
             if abs(dy * self.stated - expected) <= _AGREE * expected:
                 return dy, dx
