@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gzip
 import re
 from pathlib import Path
 
@@ -95,6 +96,27 @@ def test_data_that_are_not_there_are_refused_more_than_is_needed_is_not(tmp_path
         path.write_bytes(content[: len(content) - data + left])
         with pytest.raises(ReadError):
             images.read(path)
+
+
+@pytest.mark.parametrize(
+    ("kind", "old", "new"),
+    [("nanosurf", rb"\r\nLines=\d+\r", b"\r\nLines=8\r"), ("nanosurf", rb"\nPoints=\d+\r", b"\nPoints=16\r"),
+     ("picoview", rb"yPixels( +)\d+", rb"yPixels\g<1>12"), ("picoview", rb"xPixels( +)\d+", rb"xPixels\g<1>16")],
+)  # fmt: skip
+def test_fewer_pixels_than_there_are_data_are_refused(tmp_path: Path, kind: str, old: bytes, new: bytes) -> None:
+    path = WRITERS[kind](tmp_path / "image")
+    changed = re.sub(old, new, path.read_bytes())
+    assert changed != path.read_bytes()
+    path.write_bytes(changed)
+    with pytest.raises(ReadError, match="bytes of data, but its header states .*: its points, lines or bits are wrong"):
+        images.read(path)
+
+
+@pytest.mark.parametrize(("name", "words"), [("a.axz", "Anasys Analysis Studio"), ("a.spm.gz", "packed by gzip")])
+def test_packed_files_are_refused_by_name(tmp_path: Path, name: str, words: str) -> None:
+    (tmp_path / name).write_bytes(gzip.compress(b"<?xml version='1.0'?><Document/>"))
+    with pytest.raises(ReadError, match=words):
+        images.read(tmp_path / name)
 
 
 def test_a_wrong_check_sum_is_refused(tmp_path: Path) -> None:

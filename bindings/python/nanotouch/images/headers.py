@@ -4,8 +4,8 @@
 | format | refused: data that are not there | told in a note: what may be a damaged number, or a setting changed later |
 |---|---|---|
 | Igor (.ibw) | (check sum and lengths: before any reader sees it) | size of the scan in the note and pixel size |
-| Nanosurf (.nid) | file shorter than its channels | size, points and lines in the scan's section |
-| PicoView (.mi) | file shorter than its channels | |
+| Nanosurf (.nid) | file shorter or longer than its channels | size, points and lines in the scan's section |
+| PicoView (.mi) | file shorter or longer than its channels | |
 
 No format promises the second column, so it does not refuse a file. The others say nothing twice, or their reader
 compares it already (.gwy: array length and pixels).
@@ -41,9 +41,14 @@ def _differ(first: tuple[str, float], second: tuple[str, float], tolerance: floa
     return f"its header contradicts itself: {what} {a:.6g}, but {other} {b:.6g}"
 
 
-def _short(file: Path, held: int, needed: int) -> None:
+def _check_held(file: Path, held: int, needed: int, line: int) -> None:
+    """Refuse data that end early, and those that go on for a `line` [byte] or more: lines or points are then others."""
     if held < needed:
         raise ReadError(f"{file}: {held} bytes of data, but its header states {needed}: it is cut off or damaged")
+    if held >= needed + line:
+        raise ReadError(
+            f"{file}: {held} bytes of data, but its header states {needed}: its points, lines or bits are wrong"
+        )
 
 
 def _length(text: str) -> float | None:
@@ -85,14 +90,15 @@ def _nanosurf(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
         stated = _length(facts.get("Image size", ""))
         if stated is not None:
             yield _differ(("image size [m]", stated), ("of the channel [m]", nx * plane.pixel_size[1]))
-    sections = re.findall(r"\[DataSet-\d+:\d+\](.*?)(?=\n\[|\Z)", text, re.S)
+    sections = re.findall(r"\[(DataSet-\d+:\d+)\](.*?)(?=\n\[|\Z)", text, re.S)
+    listed = set(re.findall(r"^Gr\d+-Ch\d+=(\S+)", text, re.M))
     sizes = []
-    for section in sections:
+    for section in (body for name, body in sections if name in listed):
         facts = dict(line.strip().split("=", 1) for line in section.splitlines() if "=" in line)
         if facts.get("SaveMode", "") == "Binary":
             sizes.append(int(facts["Points"]) * int(facts["Lines"]) * int(facts["SaveBits"]) // 8)
     if mark:
-        _short(file, len(data), sum(sizes))
+        _check_held(file, len(data), sum(sizes), nx)
 
 
 def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
@@ -102,7 +108,8 @@ def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
         return  # as text
     width = 4 if end[1] == b"BINARY_32" else 2
     buffers = len(re.findall(rb"\nbufferLabel\s", content[: end.end()]))
-    _short(file, len(content) - end.end(), buffers * width * plane.values.size)
+    nx = plane.values.shape[1]
+    _check_held(file, len(content) - end.end(), buffers * width * plane.values.size, nx * width)
     yield from ()
 
 
