@@ -157,6 +157,21 @@ def nova(path: Path, comma: bool = True, gap: str = "\t", mark: bool = False, tu
     return path
 
 
+@pytest.mark.parametrize(("place", "row"), [(0, "nan\tnan\tnan"), (-1, "nan\tnan\tnan"), (40, "nan\tnan\tnan")])
+def test_rows_of_nova_without_numbers_are_left_out_and_told(tmp_path: Path, place: int, row: str) -> None:
+    known = {"spring_constant": 0.05, "sensitivity": 50.0}
+    path = nova(tmp_path / "a.txt")
+    (whole,) = curves.read(path, **known)  # type: ignore[arg-type]
+    lines = path.read_text().splitlines()
+    lines.insert(place % (len(lines) + 1), row)
+    path.write_text("\n".join(lines) + "\n")
+    (curve,) = curves.read(path, **known)  # type: ignore[arg-type]
+    for ours, theirs in zip(curve.segments, whole.segments, strict=True):
+        np.testing.assert_array_equal(ours.z, theirs.z)
+        np.testing.assert_array_equal(ours.force, theirs.force)  # type: ignore[arg-type]
+    assert "1 row of the approach without a number left out" in curve.meta["notes"]
+
+
 @pytest.mark.parametrize(("comma", "gap", "mark", "turned"), [
     (True, "\t", False, False), (False, "\t", False, False), (True, ";", True, False), (False, ",", False, True),
     (False, "  ", True, True),

@@ -15,7 +15,7 @@ import numpy as np
 
 from .._arrays import Floats
 from .._io import text
-from .._io.words import printable
+from .._io.words import counted, printable
 from ..errors import ReadError
 from .calibration import DETECTOR, Calibration, check_detector
 from .checks import MAX_POINTS, MIN_POINTS
@@ -34,7 +34,11 @@ def recognises(file: Path, head: bytes) -> bool:
         lines = text.plain(text.decoded(head)).splitlines()[:-1]  # the last one may be cut
     except text.NotATable:
         return False
-    return bool(lines) and all(text.is_row(line) and len(line.split("\t")) == _COLUMNS for line in lines)
+    return bool(lines) and all(_is_row(line) and len(line.split()) == _COLUMNS for line in lines)
+
+
+def _is_row(line: str) -> bool:
+    return text.is_row(line) or set(line.casefold().split()) == {"nan"}
 
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
@@ -52,21 +56,31 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     if values.shape[1] != _COLUMNS or not MIN_POINTS <= len(values) <= MAX_POINTS:
         raise ReadError(f"{file}: {len(values)} rows of {values.shape[1]} numbers, expected {MIN_POINTS} or more of 3")
     values *= _NANO
-    outwards = values if values[-1, 0] >= values[0, 0] else values[::-1]
+    heights = values[np.isfinite(values[:, 0]), 0]
+    outwards = values if heights.size and heights[-1] >= heights[0] else values[::-1]
     branches: tuple[tuple[Role, Floats], ...] = (
-        ("approach", _without_padding(outwards[:, :2])[::-1]),
-        ("retract", _without_padding(outwards[:, ::2])),
+        ("approach", outwards[:, :2]),
+        ("retract", outwards[:, ::2]),
     )
     meta: dict[str, Any] = {
         "enum": 0, "imaging mode": "force-distance", "path": file, "format": "NT-MDT (exported by NT-MDT Nova)",
         "spring constant": calibration.spring_constant, "sensitivity": calibration.sensitivity, DETECTOR: "A",
     }  # fmt: skip
     segments = []
-    for role, branch in branches:
+    notes = []
+    for role, rows in branches:
+        known = rows[np.isfinite(rows).all(axis=1)]
+        if not len(known):
+            raise ReadError(f"{file}: its {role} has no numbers")
+        if len(known) < len(rows):
+            notes.append(f"{counted(len(rows) - len(known), 'row')} of the {role} without a number left out")
+        branch = _without_padding(known)[:: -1 if role == "approach" else 1]
         bent = branch[:, 1] * calibration.sensitivity
         time = np.full(len(branch), np.nan)
         force = bent * calibration.spring_constant
         segments.append(Segment(role, time, branch[:, 0], "height (measured)", force, bent))
+    if notes:
+        meta["notes"] = tuple(notes)
     return [ForceCurve(tuple(segments), meta, printable(file.name))]
 
 
