@@ -26,7 +26,7 @@ pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")
 pytest.importorskip("matplotlib")
 
-WITHIN = 3.0  # [s]; one is due, and the machine may be busy
+WITHIN = 5.0  # [s]; one is due, and the machine may be busy with other tests
 RAMP, SENSITIVITY, STIFFNESS = 300e-9, 41e-9, 0.5  # m, m/V, N/m
 KNOWN = ["--radius", "20nm", "--spring-constant", "0.5N/m"]
 
@@ -45,12 +45,13 @@ def begun(line: list[str], ignored: bool = False) -> subprocess.Popen[str]:
         signal.signal(signal.SIGINT, before)
 
 
-def stopped(line: list[str], there: Callable[[], bool]) -> str:
-    """What a command says that is stopped once something is there."""
+def stopped(line: list[str], there: Callable[[], bool], later: float = 0.0) -> str:
+    """What a command says that is stopped once something is there, and some time [s] later."""
     process = begun(line)
     while not there():
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
+    time.sleep(later)
     sent = time.monotonic()
     process.send_signal(signal.SIGINT)
     said = process.communicate()[1]
@@ -84,8 +85,7 @@ def lines(path: Path) -> int:
 
 def test_a_push_keeps_its_way(tmp_path: Path) -> None:
     line = ["push", "--to", "400um,3um", "--tolerance", "1nm", "--out", str(tmp_path / "out")]
-    started = time.monotonic()
-    said = stopped(line, lambda: time.monotonic() - started > 2.0)
+    said = stopped(line, (tmp_path / "out").exists, 1.0)
     if "nothing is kept" not in said:
         pushes = int(said.split("; ")[1].split()[0])
         assert 0 < pushes < 200
@@ -113,8 +113,8 @@ def test_a_workflow_keeps_its_finished_steps(
 
 
 def test_a_workflow_answers_while_it_scans(tmp_path: Path) -> None:
-    out, started = tmp_path / "out", time.monotonic()
-    said = stopped(["workflow", "--pixels", "512", "--out", str(out)], lambda: time.monotonic() - started > 2.0)
+    out = tmp_path / "out"
+    said = stopped(["workflow", "--pixels", "512", "--out", str(out)], out.exists, 0.5)
     assert "nothing is kept" in said
     assert not out.exists()
 
