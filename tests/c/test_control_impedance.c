@@ -52,8 +52,7 @@ static void a_master_that_is_moved(void **state)
         nt_rig rig;
         nt_settings settings;
         setup_of(row->in, &rig, &settings);
-        const nt_loop_response found =
-            nt_margins_response(&rig, &settings.gains, row->in[STIFFNESS], row->frequency);
+        const nt_loop_response found = nt_margins_response(&rig, &settings.gains, row->in[STIFFNESS], row->frequency);
         const double path = hypot(row->path[0], row->path[1]), z = hypot(row->impedance[0], row->impedance[1]);
         for (int k = 0; k < 2; ++k) { /* what has not settled yet is exp(-18) */
             assert_true(fabs(found.path[k] - row->path[k]) < 1e-6 * path);
@@ -107,7 +106,7 @@ static void eq_17_alone(void **state)
         nt_rig rig;
         nt_settings settings;
         setup_of(printed_cases[i].in, &rig, &settings);
-        const double found = nt_servo_stage_margin(&rig, &settings); 
+        const double found = nt_servo_stage_margin(&rig, &settings);
         /* in ratios of 1.001, and what grows so slowly that a run does not show it */
         assert_true(fabs(found / printed_cases[i].limit - 1.0) < 1.5e-3);
         settings.control.choice = NT_CONTROL_DEFAULT;
@@ -189,7 +188,8 @@ static void the_verdicts(void **state)
         assert_string_equal(taps.rule, "amplitude servo");
         const nt_verdict blind = nt_margins_judge(&rig, &settings, k, NT_MODE_TOUCH, &m);
         const int paper = settings.control.choice == NT_CONTROL_PAPER;
-        const double stage = paper ? nt_servo_stage_margin(&rig, &settings) : m.integral_limit / as.gains.stage_integral;
+        const double stage =
+            paper ? nt_servo_stage_margin(&rig, &settings) : m.integral_limit / as.gains.stage_integral;
         assert_true(alike(blind.margin, smaller(m.coupling_margin, stage), 1e-12));
     }
 }

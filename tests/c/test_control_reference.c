@@ -10,6 +10,7 @@
 
 #include "../reference/loop_table.h"
 #include "../reference/sideways_table.h"
+#include "larger.h"
 #include "nanotouch/margins.h"
 
 enum { CASES = sizeof loop_cases / sizeof loop_cases[0], STIFFNESS = sizeof loop_cases[0].in / sizeof(double) - 1 };
@@ -77,6 +78,7 @@ static void calm_is_that_of_the_whole_matrix(void **state)
 static void sideways_margins_are_those_of_the_whole_matrix(void **state)
 {
     (void)state;
+    int exact_ones = 0;
     for (size_t i = 0; i < sizeof sideways_cases / sizeof sideways_cases[0]; ++i) {
         const sideways_case *row = &sideways_cases[i];
         nt_rig rig = nt_rig_defaults();
@@ -94,10 +96,15 @@ static void sideways_margins_are_those_of_the_whole_matrix(void **state)
         COMPARE(row, found, exact_frequency, 1e-6);
         COMPARE(row, found, coupling, 1e-9);
         COMPARE(row, found, coupled_margin, 1e-6);
+        const nt_margins far = {.loop_stiffness = 1.0, .loop_delay = 1.0, .stability_limit = 1e300, .margin = 1e300};
+        const nt_sideways_margins exact = nt_margins_sideways(&rig, &settings, k, &contact, &far); /* no rule along z */
+        compare(row->kind, "all axes, exactly", exact.coupled_margin, smaller(row->margin, row->together), 1e-6);
+        exact_ones += row->together < row->margin;
         settings.gains.projection_x = 0.3;
         settings.gains.projection_y = -0.4;
         compare(row->kind, "projected", nt_margins_projected(&rig, &settings, k, &contact), row->projected, 1e-12);
     }
+    assert_true(exact_ones >= 4);
 }
 
 int main(void)

@@ -116,12 +116,142 @@ static void what_a_touch_needs_in_each_period(void **state)
     }
 }
 
+static nt_status refusal(const nt_rig *rig, const nt_settings *settings, nt_mode mode, nt_problem *problem)
+{
+    nt_touch touch;
+    return nt_touch_make(&touch, rig, settings, mode, problem);
+}
+
+/* Samples are at most two periods old: repeated at most three times, with a latency twice where that is a period at
+ * most, or once; at the border it is made, just above it is refused with it. */
+static void the_rate_at_which_samples_get_stale(void **state)
+{
+    (void)state;
+    const struct {
+        double each, latency, rate;
+    } cases[] = {{0.0, 1e-4, 2e4}, {4e3, 0.0, 12e3}, {4e3, 1e-5, 8e3}, {4e3, 2e-4, 5e3}, {4e3, 2.4e-4, 1.0 / 2.4e-4},
+                 {4e3, 3e-4, 4e3}, {4e3, 1e-3, 2e3}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        nt_rig rig = nt_rig_defaults();
+        rig.converters.adc_rate = cases[i].each;
+        rig.converters.adc_latency = cases[i].latency;
+        nt_settings settings = nt_settings_defaults(&rig);
+        nt_problem problem;
+        settings.gains.rate = cases[i].rate * (1.0 - 1e-12);
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TOUCH, &problem), NT_OK);
+        settings.gains.rate = cases[i].rate * (1.0 + 1e-12);
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TOUCH, &problem), NT_E_RANGE);
+        assert_string_equal(problem.field, "gains.rate");
+        assert_true(alike(problem.maximum, cases[i].rate, EXACT) && problem.minimum == 0.0);
+    }
+}
+
+static void what_the_rig_cannot_keep_by_number(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings usual = nt_settings_defaults(&rig);
+    const double saturation = rig.probe.spring_constant * rig.probe.range * rig.probe.sensitivity;
+    const struct {
+        size_t field;
+        double most;
+    } cases[] = {{offsetof(nt_settings, limits.force), saturation},
+                 {offsetof(nt_settings, gains.set_point), usual.limits.force},
+                 {offsetof(nt_settings, limits.stage_speed), rig.stage.max_speed},
+                 {offsetof(nt_settings, limits.retract_speed), rig.stage.max_speed},
+                 {offsetof(nt_settings, limits.motor_force), rig.master.max_force}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        nt_settings settings = usual;
+        double *field = (double *)((char *)&settings + cases[i].field);
+        nt_problem problem;
+        *field = cases[i].most;
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TOUCH, NULL), NT_OK);
+        *field = nextafter(cases[i].most, 1.0 + 2.0 * cases[i].most);
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TOUCH, &problem), NT_E_RANGE);
+        assert_true(problem.value == *field && alike(problem.maximum, cases[i].most, EXACT));
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TOUCH, NULL), NT_E_RANGE);
+    }
+}
+
+/* A projection needs a master of one axis and a lever that shows x and y; K_f a gauge, but not by impedance. */
+static void what_needs_what(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 16; ++i) {
+        nt_rig rig = nt_rig_defaults();
+        rig.master.axes = i & 1 ? 3.0 : 1.0;
+        rig.probe.lateral_stiffness = i & 2 ? 100.0 : 0.0;
+        nt_settings settings = nt_settings_defaults(&rig);
+        settings.gains.projection_x = i & 4 ? 0.5 : 0.0;
+        settings.gains.projection_y = i & 8 ? -0.5 : 0.0;
+        nt_problem problem;
+        const nt_status status = refusal(&rig, &settings, NT_MODE_TOUCH, &problem);
+        const int needs = i & 12, has = !(i & 1) && i & 2;
+        assert_int_equal(status, needs && !has ? NT_E_RANGE : NT_OK);
+        if (status != NT_OK)
+            assert_true(problem.value == (i & 4 && i & 8 ? 1.0 : 0.5));
+    }
+    for (int i = 0; i < 8; ++i) {
+        nt_rig rig = nt_rig_defaults();
+        rig.master.gauge = i & 1;
+        nt_settings settings = nt_settings_defaults(&rig);
+        settings.gains.force_gain = i & 2 ? 0.5 : 0.0;
+        settings.control.choice = i & 4 ? NT_CONTROL_IMPEDANCE : NT_CONTROL_PAPER;
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TOUCH, NULL), i == 2 ? NT_E_RANGE : NT_OK);
+    }
+}
+
+/* A held phase is told within a tenth of the resonance's width, f0/Q/2 to either side. */
+static void a_lever_that_taps(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    const double f0 = rig.probe.resonance, width = 0.05 * f0 / rig.probe.quality;
+    const double off[] = {-1.0 - 1e-9, -1.0 + 1e-9, 1.0 - 1e-9, 1.0 + 1e-9};
+    for (int i = 0; i < 4; ++i) {
+        const int inside = i == 1 || i == 2;
+        nt_problem problem;
+        settings.tap.frequency = f0 + off[i] * width;
+        settings.tap.hold = 1;
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TAPPING, &problem), inside ? NT_OK : NT_E_RANGE);
+        if (!inside)
+            assert_true(alike(problem.minimum, f0 - width, EXACT) && alike(problem.maximum, f0 + width, EXACT));
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TOUCH, &problem), NT_OK);
+        settings.tap.hold = 0;
+        assert_int_equal(refusal(&rig, &settings, NT_MODE_TAPPING, &problem), NT_OK);
+    }
+    settings.tap.free_amplitude = 3e-9;
+    nt_touch touch;
+    assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TAPPING, NULL), NT_OK);
+    assert_true(touch.drive_amplitude == 3e-9 && touch.drive_frequency == settings.tap.frequency);
+    assert_true(touch.supervisor.amplitude.most == 1.5 * 3e-9);
+    settings.tap.hold = 1;
+    settings.tap.frequency = 0.0;
+    assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TAPPING, NULL), NT_OK);
+    assert_true(touch.drive_frequency == f0);
+    assert_int_equal(refusal(&rig, &settings, (nt_mode)(NT_MODE_TAPPING + 1), NULL), NT_E_ARGUMENT);
+    nt_touch_state begun = nt_touch_start(&touch, 0.25, 1.0, 2.0);
+    assert_true(begun.passivity.gain == 1.0 && begun.passivity_sideways[0].gain == 1.0);
+    assert_true(begun.passivity_sideways[1].gain == 1.0 && begun.signals.gain_factor == 1.0);
+    assert_true(begun.passivity.last_hand.position == 0.25 && begun.offset == -0.25 * settings.gains.alpha_p);
+    assert_true(isnan(begun.hand_at[0]) && isnan(begun.stage_at[1]) && begun.command.stage_position[NT_Y] == 2.0);
+    nt_command command;
+    nt_sample sample = {.amplitude = 3e-9, .lag = 1.5, .stage_position = {1.0, 2.0, 0.0}};
+    nt_touch_step(&touch, &begun, &sample, &command);
+    assert_true(command.drive_amplitude == 3e-9 && command.drive_frequency == f0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults_of_a_rig),
         cmocka_unit_test(defaults_that_no_rig_changes),
         cmocka_unit_test(what_a_touch_needs_in_each_period),
+        cmocka_unit_test(the_rate_at_which_samples_get_stale),
+        cmocka_unit_test(what_the_rig_cannot_keep_by_number),
+        cmocka_unit_test(what_needs_what),
+        cmocka_unit_test(a_lever_that_taps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

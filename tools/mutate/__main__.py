@@ -55,13 +55,13 @@ def baseline(build: Build, jobs: int, slowest: float) -> Reach:
     tests = build.tests()
     folder = ROOT / "build/mutate/reached"
     folder.mkdir(parents=True, exist_ok=True)
-    notes = {test: folder / f"{test.replace('/', '_')}-{build.fingerprint(test)[:16]}" for test in tests}
+    notes = {test: folder / f"{test.replace('/', '_')}-{build.fingerprint(test)[:16]}-{slowest:g}" for test in tests}
 
     def run(test: str) -> tuple[bool, float]:
-        took = notes[test].with_suffix(".took")
+        took = Path(f"{notes[test]}.took")
         if not took.exists():
             notes[test].unlink(missing_ok=True)
-            passed, seconds = build.run(test, 0, notes[test], None)
+            passed, seconds = build.run(test, 0, notes[test], slowest)
             took.write_text(f"{int(passed)} {seconds}")
         words = took.read_text().split()
         return words[0] == "1", float(words[1])
@@ -69,9 +69,9 @@ def baseline(build: Build, jobs: int, slowest: float) -> Reach:
     with ThreadPoolExecutor(jobs) as pool:
         results = dict(zip(tests, pool.map(run, tests), strict=True))
     for test, (passed, seconds) in results.items():
-        if not passed or seconds > slowest:
-            print(f"left out, {f'takes {seconds:.1f} s' if passed else 'fails without a mutant'}: {test}")
-    times = {test: seconds for test, (passed, seconds) in results.items() if passed and seconds <= slowest}
+        if not passed:
+            print(f"left out, {f'takes over {slowest:g} s' if seconds > slowest else 'fails without a mutant'}: {test}")
+    times = {test: seconds for test, (passed, seconds) in results.items() if passed}
     through: dict[int, list[str]] = {}
     for test in sorted(times, key=times.__getitem__):
         if notes[test].exists():
