@@ -153,7 +153,7 @@ double nt_mode_run(const nt_touch *touch, nt_touch_state *state)
 double nt_mode_release(const nt_touch *touch, nt_touch_state *state)
 {
     const nt_signals *signals = &state->signals;
-    state->stretch = 0.0;
+    state->stretch = state->sideways[NT_X] = state->sideways[NT_Y] = 0.0; /* nothing is owed to the hand any more */
     state->offset = state->reference - signals->scaling.alpha_p * signals->master_position;
     (void)nt_motor_fade(touch, state);
     return nt_motor_faded(touch, state, NT_Z, nt_observe_speed(state));

@@ -271,6 +271,48 @@ static void a_spike_does_not_reach_the_hand(void **state)
     assert_true(b.command.motor_force[NT_Z] < before - 1.0);
 }
 
+/* Ticks of a hand that holds still, over a stage that is there at once. */
+static void hold_still(bench *b, int ticks)
+{
+    for (int i = 0; i < ticks; i++) {
+        for (int axis = NT_X; axis <= NT_Z; axis++)
+            b->sample.stage_position[axis] = b->command.stage_position[axis];
+        b->sample.deflection[NT_Z] = 1e-12 * sin(1.7 * i);
+        nt_touch_step(&b->touch, &b->state, &b->sample, &b->command);
+    }
+}
+
+/* A hand of three axes goes farther than the limit lets the tip follow. What is left of that way is gone with a stop,
+ * or a clutch: the tip goes nowhere that the hand does not go then. */
+static void a_way_that_a_stop_cuts_short_does_not_go_on(void **state)
+{
+    (void)state;
+    nt_rig rig = quiet_rig();
+    rig.master.axes = 3.0;
+    const nt_settings settings = settings_of(&rig);
+    for (int clutch = 0; clutch <= 1; clutch++) {
+        bench b;
+        assert_int_equal(bench_open(&b, &rig, &settings, NT_MODE_TOUCH), NT_OK);
+        b.sample.stage_position[NT_X] = b.sample.stage_position[NT_Y] = 0.0;
+        hold_still(&b, 2000);
+        b.sample.master_position[NT_X] += 5e-3;
+        hold_still(&b, 10);
+        const double x = b.command.stage_position[NT_X];
+        assert_true(x > 0.0 && x < 0.5 * settings.gains.alpha_p * 5e-3);
+        if (clutch)
+            nt_touch_clutch(&b.state, 1);
+        else
+            b.sample.flags = NT_SAMPLE_EMERGENCY_STOP;
+        hold_still(&b, 1000);
+        b.sample.flags = 0;
+        nt_touch_clutch(&b.state, 0);
+        assert_int_equal(nt_touch_arm(&b.state, 1), NT_OK);
+        hold_still(&b, 2000);
+        assert_int_equal(b.command.state, NT_RUN);
+        assert_true(b.command.stage_position[NT_X] == x);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -283,6 +325,7 @@ int main(void)
         cmocka_unit_test(a_law_of_ones_own_stands_under_the_same_limits),
         cmocka_unit_test(a_master_without_a_gauge_is_felt_by_impedance),
         cmocka_unit_test(a_spike_does_not_reach_the_hand),
+        cmocka_unit_test(a_way_that_a_stop_cuts_short_does_not_go_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

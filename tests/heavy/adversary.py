@@ -27,10 +27,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from adversary_doors import DOORS, Refused
 from adversary_draws import Dice, plot_of
-from adversary_judge import Judge
-
-TOUCHED = 0.5
-"""a run counts for the tightness of the bound from this share of the force limit on: it did press"""
+from adversary_ground import Ground
+from adversary_judge import TOUCHED, Judge
 
 
 def run(seed: int, door: str = "") -> dict[str, Any]:
@@ -38,7 +36,8 @@ def run(seed: int, door: str = "") -> dict[str, Any]:
     plot = plot_of(seed, door)
     d = Dice(np.random.default_rng((seed, 1)))
     stands = plot.surface is None or plot.rig.stage.axes == 1.0
-    judge = Judge(plot.fault, stands and plot.door == "session")
+    ground = Ground(plot.surface) if plot.surface is not None and not stands else None
+    judge = Judge(plot.fault, stands and plot.door == "session", ground)
     row: dict[str, Any] = {"seed": seed, "door": plot.door, "kind": plot.kind,
                            "fault": list(plot.fault[:2]) if plot.fault else None}  # fmt: skip
     try:
@@ -47,7 +46,7 @@ def run(seed: int, door: str = "") -> dict[str, Any]:
         return row | {"refused": str(why)[:200]}
     worst = {name: [one.met, one.promised, one.time] for name, one in judge.worst.items()}
     return row | {"worst": worst, "broken": [one.what for one in judge.broken], "limit": judge.limit,
-                  "warned": judge.warned}  # fmt: skip
+                  "warned": judge.warned, "steepest": judge.steepest}  # fmt: skip
 
 
 def known(path: Path | None) -> dict[int, dict[str, Any]]:
@@ -60,12 +59,14 @@ def known(path: Path | None) -> dict[int, dict[str, Any]]:
 
 
 def shares(rows: list[dict[str, Any]], kind: str, what: str) -> list[float]:
-    """Bound over what was met, where it pressed, and where no WARNING said that the limit protects nothing."""
+    """Bound over what was met, where it pressed, sideways where it is steep, and no WARNING said that the limit
+    protects nothing."""
     found = []
     for row in rows:
         if row["kind"] == kind and "worst" in row and what in row["worst"] and not row["fault"] and not row["warned"]:
             met, promised, _ = row["worst"][what]
-            if met > 0.0 and row["worst"]["force"][0] > TOUCHED * row["limit"]:
+            presses = row["worst"]["force"][0] > TOUCHED * row["limit"] and (what != "sideways" or row["steepest"])
+            if met > 0.0 and presses:
                 found.append(promised / met)
     return found
 

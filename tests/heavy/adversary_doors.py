@@ -20,7 +20,7 @@ from nanotouch.errors import Error
 from nanotouch.touch.hal import Action, Capabilities, Channel, Reading
 from nanotouch.touch.operator import Input
 
-DURATION = 0.25
+DURATION = 0.2
 """of a run, in the session [s]"""
 
 
@@ -58,6 +58,25 @@ def in_thread(session: Any, hand: Hand, d: Dice, judge: Judge) -> None:
             session.rewind(d.between(0.0, 0.2))
     session.halt()
     judge.watch(session.read(65536))
+
+
+def assaulted(session: Any, hand: Hand, judge: Judge) -> None:
+    """Lifted to where it is steepest, and struck there."""
+    with contextlib.suppress(Error):  # not in this mode from here
+        session.set_mode("point")
+    session.arm(True)
+    judge.clutched = True
+    for opens in (True, False):  # nothing is owed to the hand after that
+        session.clutch(opens)
+        columns = session.advance(0.07 if opens else 0.005, hand.centre())
+        judge.watch(columns)
+        judge.clutched = False
+    hand.follow(columns)
+    for step in range(2):
+        wait, blow = hand.assault()[step]
+        columns = session.advance(wait, blow)
+        judge.watch(columns)
+        hand.follow(columns)
 
 
 def held_still(session: Any, plot: Plot, d: Dice, judge: Judge) -> None:
@@ -100,6 +119,8 @@ def fought(session: Any, plot: Plot, d: Dice, judge: Judge) -> None:
         left -= lasts
         if session.state in ("RETRACT", "LATCHED") and plot.fault is None:
             session.arm(True)
+    if plot.fault is None and d.chance(0.8):
+        assaulted(session, hand, judge)
     if d.chance(0.1):
         in_thread(session, hand, d, judge)
     elif plot.rig.master.axes == 1.0 and plot.fault is None and session.mode == "point" and d.chance(0.4):

@@ -12,7 +12,10 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+from adversary_ground import Ground
 
+TOUCHED = 0.5
+"""a run counts for the tightness of a bound where the tip was pressed with this share of the force limit"""
 FADED = 50e-3
 """after a stop the motor's force is gone by then, or by what is printed for the largest [s]"""
 TARE = 0.5
@@ -54,8 +57,9 @@ class Met(NamedTuple):
 class Judge:
     """Of one session. Faults as drawn; ``stands``: nothing leads the tip sideways, so that indentation is promised."""
 
-    def __init__(self, fault: Any = None, stands: bool = False) -> None:
+    def __init__(self, fault: Any = None, stands: bool = False, ground: Ground | None = None) -> None:
         self.failure, self.fault, self.stands = failure_of(fault), fault, stands
+        self.ground, self.steepest = ground, ground is None  # whether the tip was pressed where it is steep
         self.worst: dict[str, Met] = {}
         self.now: Any = None
         self.warned = False  # that the limit protects nothing: a snap-in alone passes it
@@ -118,6 +122,9 @@ class Judge:
         aside = self._allowed("sideways", free)
         if "tip_force_x" in columns and not self.failure:
             self._met("sideways", np.hypot(columns["tip_force_x"], columns["tip_force_y"]), aside, time)
+        hard = np.abs(force) > TOUCHED * self.limit
+        if not self.steepest and self.ground is not None and hard.any():
+            self.steepest = bool((self.ground.steepness(columns["x"][hard], columns["y"][hard]) > 0.7).any())
         depth = self._allowed("indentation", free)
         if self.stands and self.fault is None:
             self._met("indentation", np.maximum(-np.asarray(columns["gap"]), 0.0), depth, time)
