@@ -106,11 +106,13 @@ static void add_places(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig
         add_snap_in(hazard, plan, rig, still, rings, sharpest * pow(blunter, i / (RADII - 1.0)));
 }
 
-/* How far a force presses where the sample is softest; not known where each place has a radius of its own [m]. */
+/* How far a force presses where the sample is softest, at the sharpest or the bluntest place: the one gives way more,
+ * the other is drawn in farther [m]. */
 static double deepest_under(const nt_plan *plan, double force)
 {
-    const nt_well soft = {.plan = plan, .place = place_of(plan, plan->contact.radius, 0)};
-    return plan->radii ? HUGE_VAL : -nt_well_gap_of_force(&soft, force, 0.0);
+    const nt_well sharp = {.plan = plan, .place = place_of(plan, plan->least.radius, 0)};
+    const nt_well blunt = {.plan = plan, .place = place_of(plan, plan->most.radius, 0)};
+    return -fmin(nt_well_gap_of_force(&sharp, force, 0.0), nt_well_gap_of_force(&blunt, force, 0.0));
 }
 
 /* A tip that slides from the softest and sharpest place to the hardest and bluntest one is lifted by this [m]. */
@@ -219,7 +221,8 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
     }
     const double most = nt_guarantee_within(rig, settings, &hazard, relief).force;
     hazard.deepest = deepest_under(plan, most);
-    hazard.friction = nt_grip_friction(plan, most);
+    if (rig->stage.axes > 1.0) /* a tip that stands goes aside with the slope alone: friction holds it back */
+        hazard.friction = nt_grip_friction(plan, most);
     if (lever->lateral_stiffness > 0.0) { /* what it shows can be stopped */
         const nt_sideways_contact grip = nt_grip_of(plan, slope, most);
         hazard.stick = grip.stick;

@@ -68,6 +68,7 @@ class Judge:
         self.clutched = False  # uncoupled by the person: an event as a stop is
         self.before = np.zeros(3)  # of the motor [N]
         self.given = 0.0  # to the hand since [J]
+        self.hasty = False  # the hand has been faster since than is declared
         self.last: Any = None
 
     @property
@@ -82,6 +83,7 @@ class Judge:
                 self.carried[name] = max(self.carried[name], old)
         self.now, self.limit = made, float(settings.limits.force)
         self.warned |= made.warning is not None
+        self.step = 2.0 * float(session.rig.master.resolution)  # of two readings
         self.motor = min(float(settings.limits.motor_force), float(session.rig.master.max_force))
 
     def _numbers(self) -> dict[str, float]:
@@ -162,7 +164,7 @@ class Judge:
             self.stopped = -1.0
             return
         if self.stopped < 0.0:
-            self.stopped, self.given, self.before = float(time[0]), 0.0, self.last[1]
+            self.stopped, self.given, self.before, self.hasty = float(time[0]), 0.0, self.last[1], False
         rest = 1e-6 * self.motor
         size = np.linalg.norm(force, axis=1)
         self._met("motor after a stop", size, float(np.linalg.norm(self.before)) + rest, time)
@@ -171,7 +173,10 @@ class Judge:
         way = np.diff(np.vstack([self.last[2], place]), axis=0)
         held = np.vstack([self.last[1], force[:-1]])
         given = self.given + np.cumsum(np.nan_to_num((held * way).sum(axis=1)))
-        self._met("energy to the hand", np.maximum(given, 0.0), hand.energy + 1e-9, time)
+        speed = np.diff(np.append(self.last[0], time)) * hand.speed + self.step
+        self.hasty |= bool((np.linalg.norm(np.nan_to_num(way), axis=1) > speed).any())
+        if not self.hasty:  # no hand is declared that goes as fast
+            self._met("energy to the hand", np.maximum(given, 0.0), hand.energy + 1e-9, time)
         self.given = float(given[-1])
 
     def calm(self, session: Any, force: Any) -> None:

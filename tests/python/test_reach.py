@@ -121,7 +121,7 @@ def test_a_surface_rises_by_no_more_than_its_relief() -> None:
     stands = fast(0.2, "point", lateral_speed=1e-9).guarantee()
     assert 60e-9 * 8.0 < promised.motion - stands.motion < 75e-9 * 8.0 * 1.15
     force, _ = swept(session, 1.0)
-    assert 450e-9 < force < promised.force
+    assert 420e-9 < force < promised.force  # above the limit: it was swept hard
 
 
 def test_the_same_rig_has_the_same_margin_whatever_its_mode_is_called() -> None:
