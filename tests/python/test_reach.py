@@ -9,7 +9,6 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch.errors import InvalidValue
 from nanotouch.touch.operator import Hold, Input
 
 PIXEL = 20e-9
