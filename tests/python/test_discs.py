@@ -167,6 +167,6 @@ def test_a_soft_sample_is_caught_where_it_bulges_to():
         gap, further = apart(law, np.append(path, near - 1e-13), radius, modulus, 2e-7, n)[1][-2:]
         return near - (gap - end) / (gap - further) * 1e-13
 
-    coarse, fine = caught(160), caught(320)
+    coarse, fine = caught(120), caught(240)
     true = fine + (fine - coarse) / 3
     assert abs(near - true) <= plan.explain()["fold_shift"]

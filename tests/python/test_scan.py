@@ -289,7 +289,8 @@ def test_the_tilt_of_a_scan_is_taken_out_before_it_is_touched(tmp_path: Path, ca
 
     file, out = tmp_path / "tilted.toml", tmp_path / "scanned"
     file.write_text("[raster]\ntilt_x = 0.05\n")
-    line = ["scan", "flat", "--scene", str(file), "--mode", "contact", "--area", "0um,0um,1um,1um", "--pixels", "16"]
+    line = ["scan", "flat", "--scene", str(file), "--mode", "contact", "--area", "0um,0um,1um,1um", "--pixels", "16",
+            "--lines", "6"]  # fmt: skip
     assert main([*line, "--out", str(out)]) == 0
     assert "surface.gwy: auto levelling" in capsys.readouterr().out
     assert np.ptp(images.read(out / "scan.gwy", "Height").heights) > 40e-9
