@@ -138,6 +138,28 @@ static void where_nothing_can_be_told(void **state)
     assert_true(isnan(nt_margins_calm(&rig, &settings, 600.0).margin));
 }
 
+/* Just four steps of the command at once keep no time; a dead time of 10 000 periods is still one. */
+static void borders_of_what_is_reckoned(void **state)
+{
+    (void)state;
+    nt_settings settings;
+    nt_rig rig = quiet(&settings);
+    settings.gains.stage_integral = 0.0;
+    rig.stage.quality = 50.0;
+    settings.gains.alpha_p = 0x1p-15;
+    rig.stage.command_resolution = 0x1p-34;
+    rig.master.resolution = 0x1p-17; /* times alpha_p: four of them */
+    const double four = nt_margins_calm(&rig, &settings, 600.0).parts[NT_RIPPLE_STAGE_COMMAND];
+    rig.master.resolution = 0x1p-17 * (1.0 - 1e-12);
+    assert_true(nt_margins_calm(&rig, &settings, 600.0).parts[NT_RIPPLE_STAGE_COMMAND] > 1.5 * four);
+    settings.gains.rate = 0x1p13;
+    settings.gains.delay = 1000.0;
+    rig.converters.dac_latency = 9000.0 * 0x1p-13;
+    assert_true(isfinite(nt_margins_calm(&rig, &settings, 600.0).ringing));
+    rig.converters.dac_latency = 9001.0 * 0x1p-13;
+    assert_true(isnan(nt_margins_calm(&rig, &settings, 600.0).ringing));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +168,7 @@ int main(void)
         cmocka_unit_test(a_heavy_master_rings),
         cmocka_unit_test(a_slow_stage_costs_margin),
         cmocka_unit_test(where_nothing_can_be_told),
+        cmocka_unit_test(borders_of_what_is_reckoned),
         cmocka_unit_test(steps_of_the_command_may_keep_time_with_the_resonance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

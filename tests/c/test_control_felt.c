@@ -45,6 +45,7 @@ static void it_is_as_much_as_is_stable_and_calm(void **state)
         else
             rig.master.resolution = 0.2e-3;
         const double plain = settings.gains.alpha_f;
+        const double highest = NT_CLEARLY_FELT / (0.93 * 18e-9);
         settings.gains.alpha_f = nt_margins_felt_alpha_f(&rig, &settings, 18e-9, 0.4e-6, STIFFNESS);
         assert_true(settings.gains.alpha_f > plain && settings.gains.alpha_f < 1.6e7);
         for (int more = 0; more < 2; more++) {
@@ -52,7 +53,7 @@ static void it_is_as_much_as_is_stable_and_calm(void **state)
             const nt_verdict verdict = nt_margins_judge(&rig, &settings, STIFFNESS, NT_MODE_TOUCH, &margins);
             const nt_calm calm = nt_margins_calm(&rig, &settings, STIFFNESS);
             assert_int_equal(verdict.margin >= 3.0 && calm.margin >= 1.0, !more);
-            settings.gains.alpha_f *= 1.03;
+            settings.gains.alpha_f *= pow(highest / plain, 1.0 / 256.0) * (1.0 + 1e-9); /* eight times halved */
         }
     }
 }

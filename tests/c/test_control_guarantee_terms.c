@@ -297,6 +297,12 @@ static void every_term_of_the_guarantee(void **state)
         }
         if (i % 6 == 0) /* slower than what it is told */
             rig.stage.max_speed = between(&random, 1e-6, 1e-5);
+        if (i % 13 == 0) { /* just as fast as it is told */
+            rig.stage.max_speed = settings.limits.stage_speed;
+            rig.stage.hysteresis = settings.gains.stage_integral = 0.0;
+        }
+        if (i % 9 == 0) /* a read-out so coarse that it decides when a sensor is dead */
+            rig.stage.resolution = 1e-6;
         rig.stage.axes = i % 4 ? 3.0 : 1.0;
         rig.probe.lateral_stiffness *= i % 3 != 0;
         check_terms(&rig, &settings, &hazard, i % 2 ? HUGE_VAL : between(&random, 1e-10, 1e-8));

@@ -104,6 +104,53 @@ static void a_bent_law_is_judged_where_it_is_steepest(void **state)
     assert_true(amounts.gains.force_gain < 1e-9);
 }
 
+/* What hears its target as well, or is tried without a gauge. */
+typedef struct heard {
+    double target, most_raw, slave, share;
+} heard;
+
+static nt_effort hears(void *context, const nt_gains *gains, const nt_signals *s)
+{
+    heard *law = context;
+    (void)gains;
+    law->most_raw = larger(law->most_raw, fabs(s->operator_force));
+    const double drag = law->share * s->master_damping * s->smooth_speed;
+    return (nt_effort){-law->slave * s->scaling.alpha_f * s->slave_force - law->target * s->target + drag, s->target};
+}
+
+static void borders_of_a_law(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig), amounts;
+    settings.gains.alpha_f_approach = 3.0;
+    heard law = {.target = 0.0};
+    settings.control = (nt_control){NT_CONTROL_OWN, hears, &law};
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK); /* it reflects nothing */
+    assert_true(amounts.gains.alpha_f == 1e-3 && amounts.gains.force_gain == 0.0);
+    assert_true(amounts.gains.alpha_f_approach == 1.0 && amounts.limits.force == settings.limits.force);
+    assert_int_equal(amounts.control.choice, NT_CONTROL_DEFAULT);
+    /* pressed with what the gauge tells at most, scaled as the largest region is, and moved by a millionth of 5 N */
+    const double pressed = 3.0 * smaller(settings.gains.alpha_f * settings.limits.force, 5.0);
+    assert_true(fabs(law.most_raw - pressed - 1e-6 * rig.master.max_force) < 1e-12);
+    law.slave = 2.0; /* of f_s as it is, not as it is felt */
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(fabs(amounts.gains.alpha_f / (6.0 * settings.gains.alpha_f) - 1.0) < 1e-7);
+    law.target = 1e9; /* [N/m]: by far more than a step of the stage may make */
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_E_UNSUPPORTED);
+    law.target = 0.0;
+    rig.master.gauge = 0;
+    law.most_raw = 0.0;
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(law.most_raw == 0.0); /* no f_m is asked about */
+    law.share = -0.9e-4;              /* rounding of no share, and of the largest one */
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(amounts.gains.velocity_feedforward == 0.0);
+    law.share = 0.8 + 0.9e-4;
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(amounts.gains.velocity_feedforward == 0.8);
+}
+
 static nt_effort no_number(void *unused, const nt_gains *gains, const nt_signals *s)
 {
     (void)unused;
@@ -185,6 +232,7 @@ static void signals_are_moved_by_a_millionth_of_their_range(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(borders_of_a_law),
         cmocka_unit_test(a_law_is_judged_by_its_own_gains),
         cmocka_unit_test(the_default_law_amounts_to_itself),
         cmocka_unit_test(a_bent_law_is_judged_where_it_is_steepest),

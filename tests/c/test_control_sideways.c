@@ -234,9 +234,10 @@ static void what_may_be_asked(void **unused)
     assert_true(state.rescale.wanted.alpha_f == 4.0);
     state.offset = 1.0;
     state.signals.master_position = 8.0;
+    state.hand_at[NT_X] = state.hand_at[NT_Y] = 3.0;
     nt_touch_index(&state, 6.0);
     assert_true(state.offset == 1.0 + 0.5 * 2.0 && state.signals.master_position == 6.0);
-    assert_true(state.passivity.last_hand.position == 6.0 && isnan(state.hand_at[NT_Y]));
+    assert_true(state.passivity.last_hand.position == 6.0 && isnan(state.hand_at[NT_X]) && isnan(state.hand_at[NT_Y]));
     state.retracted = 3.0;
     state.target_x = state.target_y = state.target_time = 9.0;
     state.phase = NT_PHASE_UP;
@@ -252,6 +253,49 @@ static void what_may_be_asked(void **unused)
     assert_true(state.target_x == 1.0 && state.target_y == 2.0);
 }
 
+/* Over a surface that may rise and fall the indentation is not followed; nothing of the stage is taken from a place
+ * that is farther from where it was told than all of its travel. */
+static void places_of_the_stage(void **unused)
+{
+    (void)unused;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    nt_touch touch;
+    assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL), NT_OK);
+    const double d = rig.stage.travel;
+    const struct {
+        double told[2], read[2];
+        uint32_t reasons;
+    } cases[] = {{{0.7 * d, 0.7 * d}, {0.7 * d, 0.7 * d}, 0u},
+                 {{0.0, 0.0}, {d, 0.0}, 0u},
+                 {{0.0, 0.0}, {0.0, -d}, 0u},
+                 {{0.0, 0.0}, {0.8 * d, 0.61 * d}, NT_REASON_INVALID},
+                 {{0.0, 0.5 * d}, {0.0, -0.51 * d}, NT_REASON_INVALID},
+                 {{0.5 * d, 0.0}, {-0.51 * d, 0.0}, NT_REASON_INVALID}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        nt_touch_state state = nt_touch_start(&touch, 0.0, cases[i].told[0], cases[i].told[1]);
+        const nt_sample sample = {.stage_position = {cases[i].read[0], cases[i].read[1], 0.0}};
+        nt_command command;
+        nt_touch_step(&touch, &state, &sample, &command);
+        assert_int_equal(command.reasons & NT_REASON_INVALID, cases[i].reasons);
+    }
+    for (int i = 0; i < 5; ++i) { /* owed along x or y, or on the way to somewhere else */
+        nt_touch_state state = nt_touch_start(&touch, 0.0, 0.0, 0.0);
+        state.supervisor.surface = 0.0;
+        state.supervisor.expected = state.reference = 10e-9;
+        state.sideways[NT_X] = i == 1 ? 1e-3 : 0.0;
+        state.sideways[NT_Y] = i == 2 ? 1e-3 : 0.0;
+        state.target_x = i == 3 ? 1e-9 : 0.0;
+        state.target_y = i == 4 ? 1e-9 : 0.0;
+        nt_sample sample = {.stage_position = {0.0, 0.0, 10e-9}};
+        sample.deflection[NT_Z] = 50.0 * touch.supervisor.free_force / rig.probe.spring_constant * 0.1;
+        nt_command command;
+        nt_touch_step(&touch, &state, &sample, &command);
+        const double travel = 10e-9 - sample.deflection[NT_Z];
+        assert_true(fabs(state.supervisor.indentation - (i ? 0.0 : travel)) < 1e-20);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +305,7 @@ int main(void)
         cmocka_unit_test(what_holds_the_tip_is_felt),
         cmocka_unit_test(energy_sideways),
         cmocka_unit_test(what_may_be_asked),
+        cmocka_unit_test(places_of_the_stage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,6 +24,8 @@ static void defaults_of_a_rig(void **state)
     for (int i = 0; i < DRAWS; ++i) {
         nt_rig rig = drawn_rig(&random);
         rig.master.gauge = i % 2;
+        rig.stage.command_resolution *= i % 4 ? 1.0 : 30.0; /* so that its steps decide */
+        rig.stage.resolution *= i % 5 ? 1.0 : 100.0;
         rig.probe.spring_constant *= i % 3 ? 1.0 : 0.01; /* so soft that a tenth of its range is below 0.1 uN */
         const double range = rig.probe.range * rig.probe.sensitivity, most = rig.probe.spring_constant * range;
         const double e = rig.stage.command_resolution, coarser = larger(e, rig.stage.resolution);
@@ -221,7 +223,18 @@ static void a_lever_that_taps(void **state)
         settings.tap.hold = 0;
         assert_int_equal(refusal(&rig, &settings, NT_MODE_TAPPING, &problem), NT_OK);
     }
+    nt_rig other = rig;
+    double wide; /* of a quality whose border is a number without rounding */
+    do {
+        other.probe.quality *= 1.001;
+        wide = 0.05 * f0 / other.probe.quality;
+    } while ((f0 + wide) - f0 != wide);
+    settings.tap.hold = 1;
+    settings.tap.frequency = f0 + wide;
+    assert_int_equal(refusal(&other, &settings, NT_MODE_TAPPING, NULL), NT_OK);
+    settings.tap.hold = 0;
     settings.tap.free_amplitude = 3e-9;
+    settings.tap.frequency = f0 + width;
     nt_touch touch;
     assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TAPPING, NULL), NT_OK);
     assert_true(touch.drive_amplitude == 3e-9 && touch.drive_frequency == settings.tap.frequency);

@@ -66,6 +66,8 @@ def drawn(seed: int, kind: str) -> dict[str, float]:
         "settings.limits.force": log(1e-7, 1e-5), "settings.limits.stage_speed": log(3e-6, 1e-4),
         "contact_stiffness": log(5, 500),
     }  # fmt: skip
+    if "soft" in kind:
+        f["contact_stiffness"] = log(0.1, 0.3)
     if "coupled" not in kind and "paper" not in kind:  # near the limit, where the loop is felt
         f["settings.gains.alpha_f"] *= log(2e3, 2e4) / reflected(SimpleNamespace(**short(f)), f)
     if "latency" in kind:

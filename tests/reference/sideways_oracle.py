@@ -16,7 +16,19 @@ import loop_oracle as loops
 import numpy as np
 
 CONTACT = ("stick", "grip", "slope", "curvature", "load")
-KINDS = ("plain", "plain latency", "slow", "free", "fraction impedance", "smooth", "flat", "latency", "soft")
+KINDS = (
+    "plain",
+    "plain latency",
+    "slow",
+    "free",
+    "fraction impedance",
+    "smooth",
+    "flat",
+    "latency",
+    "soft",
+    "stuck",
+    "stuck latency",
+)
 
 
 class Both(loops.Loop):
@@ -72,6 +84,8 @@ def contact_of(kind: str, random: Any, p: Any) -> dict[str, float]:
 
     found = {"stick": log(0.05, 0.5) * p.k_eff, "grip": log(0.05, 0.3) * p.k, "slope": log(0.1, 0.6),
              "curvature": log(1e5, 1e7), "load": log(1e-8, 1e-6)}  # fmt: skip
+    if "stuck" in kind:
+        found["stick"], found["grip"] = log(3.0, 8.0) * p.k_eff, log(0.5, 1.0) * p.k
     if "smooth" in kind:
         found["stick"] = found["grip"] = 0.0
     if "flat" in kind:

@@ -21,8 +21,13 @@ SWAPPED = {
 SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "floor": "ceil", "ceil": "floor"}
 BINARY = (cindex.CursorKind.BINARY_OPERATOR, cindex.CursorKind.COMPOUND_ASSIGNMENT_OPERATOR)
 LITERALS = (cindex.CursorKind.INTEGER_LITERAL, cindex.CursorKind.FLOATING_LITERAL)
-CONSTANT = (cindex.CursorKind.ENUM_DECL, cindex.CursorKind.CASE_STMT, cindex.CursorKind.STATIC_ASSERT)
-"""What lies below these has to be a constant, which a switch is not."""
+CONSTANT = (
+    cindex.CursorKind.ENUM_DECL,
+    cindex.CursorKind.CASE_STMT,
+    cindex.CursorKind.STATIC_ASSERT,
+    cindex.CursorKind.PARM_DECL,
+)
+"""What lies below these has to be a constant, which a switch is not, or says nothing."""
 
 
 class Mutant(NamedTuple):
