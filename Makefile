@@ -59,7 +59,7 @@ sanitize:  ## clang's address, undefined-behaviour and thread sanitizers over al
 	@tools/setup.sh sanitize
 	@JOBS=$(JOBS) tools/sanitize.sh all
 
-sanitize-sample:  ## the same over what crosses a border, in C: foreign bytes, handles, threads; a minute or two
+sanitize-sample:  ## the same over what crosses a border and is soon built: foreign bytes, shared memory, threads; half a minute
 	@tools/setup.sh sanitize
 	@JOBS=$(JOBS) tools/sanitize.sh sample
 

@@ -80,12 +80,12 @@ static void lift_by_row(block *b, long dj)
         const long start = b->first + di < 0 ? -di : b->first;
         const long end = b->last + di < map->nx ? b->last : map->nx - 1 - di;
         const long offset = dj * map->nx + di;
-        long *touching = b->touching - b->first;
         for (long i = start; i <= end; i++) {
             const double apex = heights[i + di] - tip;
             const int higher = apex > b->dilated[i];
+            long *touching = &b->touching[i - b->first];
             b->dilated[i] = higher ? apex : b->dilated[i];
-            touching[i] = higher ? offset : touching[i];
+            *touching = higher ? offset : *touching;
         }
     }
 }
