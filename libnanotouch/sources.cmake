@@ -67,6 +67,16 @@ set(nanotouch_sources_manipulation
     manipulation/rod.c
     manipulation/rod_step.c)
 set(nanotouch_sources_plasticity plasticity/dents.c plasticity/imprint.c plasticity/indentation.c plasticity/scratch.c)
+set(nanotouch_sources_rheology
+    rheology/arms.c
+    rheology/grow.c
+    rheology/power_law.c
+    rheology/profile.c
+    rheology/prony.c
+    rheology/rheology.c
+    rheology/shrink.c
+    rheology/standard_linear_solid.c
+    rheology/viscoelastic.c)
 set(nanotouch_sources_surface
     surface/dilation.c
     surface/dots.c

@@ -15,6 +15,7 @@ from nanotouch import maps as maps
 from nanotouch import plasticity as plasticity
 from nanotouch import plots as plots
 from nanotouch import reference as reference
+from nanotouch import rheology as rheology
 from nanotouch import scan as scan
 from nanotouch import scene as scene
 from nanotouch import touch as touch
@@ -30,6 +31,7 @@ from nanotouch.images import Topography as Topography
 from nanotouch.manipulation import Particle as Particle
 from nanotouch.manipulation import ParticleContact as ParticleContact
 from nanotouch.manipulation import Particles as Particles
+from nanotouch.rheology import Rheology as Rheology
 from nanotouch.scan import flow as flow
 from nanotouch.scan import scanner as scanner
 from nanotouch.scan import steady as steady
@@ -91,6 +93,7 @@ __all__ = [
     "Particles",
     "Plan",
     "Recording",
+    "Rheology",
     "Rig",
     "Scan",
     "Scanner",
@@ -135,6 +138,7 @@ __all__ = [
     "raster",
     "record",
     "reference",
+    "rheology",
     "rig_file",
     "scan",
     "scanner",

@@ -10,6 +10,7 @@ from nanotouch._friction import *  # noqa: F403
 from nanotouch._margins import *  # noqa: F403
 from nanotouch._particle import *  # noqa: F403
 from nanotouch._plasticity import *  # noqa: F403
+from nanotouch._rheology import *  # noqa: F403
 from nanotouch._scan import *  # noqa: F403
 
 Floats = NDArray[float64]

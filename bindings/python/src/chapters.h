@@ -27,6 +27,7 @@ void bind_pushed(py::module_ &module);
 void bind_rod(py::module_ &module);
 void bind_plan(py::module_ &module);
 void bind_plasticity(py::module_ &module);
+void bind_rheology(py::module_ &module);
 void bind_scan(py::module_ &module);
 void bind_steady(py::module_ &module);
 void bind_tapping(py::module_ &module);

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, module)
     bind_rod(module);
     bind_pushed(module);
     bind_plasticity(module);
+    bind_rheology(module);
     bind_plan(module);
     bind_c_header(module);
     bind_terrain(module);

@@ -4,9 +4,9 @@
 #include "fit/models/paraboloid.h"
 
 static const nt_fit_layer layer = {
-    .c = {1.1464, 1.1771, 2.838, -0.92627, -0.38196, 0.26385},
-    .a = {0.37894, 0.45592, -0.64181, 0.21715},
-    .last = 1.349,
+    .c = NT_LAYER_PARABOLOID_C,
+    .a = NT_LAYER_PARABOLOID_A,
+    .last = NT_LAYER_PARABOLOID_LAST,
     .m = 0.5,
 };
 

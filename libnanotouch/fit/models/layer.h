@@ -2,24 +2,21 @@
  * An incompressible layer of thickness t, bonded to rigid ground: the law of the half-space times C(q), its contact
  * radius times A(q), q = (g delta)^m/t with g = R or tan(psi); private to fit/.
  *
- * Both polynomials were fitted to a numerical solution of Lebedev and Ufliand's integral equation up to a = 2 t
- * (tests/python/layer_oracle.py), C to 5e-4 and A to 2e-3 of itself. The published series agree with it for small q:
- * Garcia and Garcia, Biophys. J. 114 (2018) 2923, within 2 % up to a = 0.8 t, Dimitriadis et al., Biophys. J. 82 (2002)
- * 2798, up to a = 0.3 t. Beyond a = 2 t C goes on as a power of q, for the search alone. */
+ * contact/bonded_layer.h has both polynomials and where they end. Beyond a = 2 t C goes on as a power of q, for the
+ * search alone. */
 #ifndef NANOTOUCH_FIT_MODELS_LAYER_H
 #define NANOTOUCH_FIT_MODELS_LAYER_H
 
+#include "contact/bonded_layer.h"
 #include "fit/models/row.h"
 
 #define NT_FIT_THINNEST 2.0 /* contact radius over t up to which the polynomials hold */
 #define NT_FIT_BONDED                                                                                                  \
     "no adhesion, incompressible layer bonded to rigid ground, contact radius up to twice its thickness"
 
-enum { NT_FIT_C = 6, NT_FIT_A = 4 };
-
 typedef struct nt_fit_layer {
-    double c[NT_FIT_C]; /* C = 1 + c1 q + c2 q^2 .. */
-    double a[NT_FIT_A];
+    double c[NT_LAYER_C]; /* C = 1 + c1 q + c2 q^2 .. */
+    double a[NT_LAYER_A];
     double last; /* q at a = 2 t */
     double m;    /* 1/2: q = sqrt(R delta)/t; 1: q = delta tan(psi)/t */
 } nt_fit_layer;
@@ -42,7 +39,7 @@ static inline nt_fit_state nt_fit_layer_at(const nt_fit_layer *layer, const nt_f
 {
     const double q = pow(s * branch->size, layer->m) / branch->thickness;
     double slope;
-    const double inside = nt_fit_polynomial(layer->c, NT_FIT_C, fmin(q, layer->last), &slope);
+    const double inside = nt_fit_polynomial(layer->c, NT_LAYER_C, fmin(q, layer->last), &slope);
     const double C = q > layer->last ? inside * pow(q / layer->last, slope) : inside;
     const double per_depth = branch->prefactor * pow(s, exponent - 1.0) * C; /* F/delta */
     return (nt_fit_state){.F = per_depth * s,
@@ -57,7 +54,7 @@ static inline double nt_fit_layer_wider(const nt_fit_layer *layer, const nt_fit_
 {
     double slope;
     const double q = pow(indentation * branch->size, layer->m) / branch->thickness;
-    return nt_fit_polynomial(layer->a, NT_FIT_A, fmin(q, layer->last), &slope);
+    return nt_fit_polynomial(layer->a, NT_LAYER_A, fmin(q, layer->last), &slope);
 }
 
 /* t in the fourth place; .range is -dF/d ln t. */

@@ -4,9 +4,9 @@
 #include "nanotouch/material.h"
 
 static const nt_fit_layer layer = {
-    .c = {0.73276, 0.50337, 0.79952, 0.31299, -0.40823, 0.1026},
-    .a = {0.32647, 0.51237, -0.46915, 0.11201},
-    .last = 1.851,
+    .c = NT_LAYER_CONE_C,
+    .a = NT_LAYER_CONE_A,
+    .last = NT_LAYER_CONE_LAST,
     .m = 1.0,
 };
 

@@ -30,6 +30,7 @@
 #include "nanotouch/plan.h"
 #include "nanotouch/plasticity.h"
 #include "nanotouch/pushed.h"
+#include "nanotouch/rheology.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/rod.h"
 #include "nanotouch/scan.h"
@@ -44,5 +45,6 @@
 #include "nanotouch/types.h"
 #include "nanotouch/version.h"
 #include "nanotouch/view.h"
+#include "nanotouch/viscoelastic.h"
 
 #endif
