@@ -86,6 +86,7 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@$(VENV)/python tests/heavy/deformation.py
 	@$(VENV)/python tests/heavy/kills.py
 	@$(VENV)/python tests/heavy/hour.py
+	@$(VENV)/python tests/heavy/large_map.py
 	@$(VENV)/python tests/heavy/push.py
 	@$(VENV)/python tests/heavy/rods.py
 	@cmake --preset dev --log-level WARNING

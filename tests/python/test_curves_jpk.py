@@ -48,9 +48,10 @@ def test_a_curve_of_two_points_is_read_and_not_analysed(tmp_path: Path) -> None:
         curves.analyse(curve)
 
 
-def as_map(path: Path, count: int) -> Path:
-    """The single curve `count` times, as JPK writes maps: what all share stands once."""
-    with zipfile.ZipFile(single(path.with_suffix(".jpk-force"))) as one, zipfile.ZipFile(path, "w") as many:
+def as_map(path: Path, count: int, curve: Path | None = None) -> Path:
+    """A single curve `count` times, as JPK writes maps: what all share stands once."""
+    curve = curve or single(path.with_suffix(".jpk-force"))
+    with zipfile.ZipFile(curve) as one, zipfile.ZipFile(path, "w") as many:
         lines = ["type=force-scan-map", "force-scan-map.position-pattern.grid.ilength=4"]
         lines += [f"force-scan-map.position-pattern.grid.jlength={count // 4}"]
         for key, value in (("xcenter", 2e-6), ("ycenter", 1e-6), ("ulength", 4e-6), ("vlength", 2e-6)):
