@@ -10,6 +10,7 @@ from typing import Any
 
 from nanotouch import rig_file
 from nanotouch.errors import InvalidValue
+from nanotouch.plots import new_figure, saved
 from nanotouch.units import in_words, parse_quantity
 
 from nanotouch_app import output
@@ -79,9 +80,7 @@ def run(args: argparse.Namespace) -> int:
 
 def draw(found: rig_file.Latency, file: Path) -> None:
     """Number of wake-ups over their lateness, both logarithmic, with the fifth of the period that is late."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+    figure = new_figure(7.0, 4.0)
     axes = figure.add_subplot(xscale="log", yscale="log")
     micro = [1e6 * max(edge, 1e-9) for edge in found.edges]
     widths = [2.0 ** max(math.floor(math.log2(1e3 * edge)) - 4, 0) / 1e3 for edge in micro]  # as timing.h has them
@@ -93,4 +92,4 @@ def draw(found: rig_file.Latency, file: Path) -> None:
             axes.text(1e6 * value, 1.0, f" p{100.0 * share:g}", rotation=90, va="bottom", fontsize="small")
     axes.set(xlabel="lateness of the wake-up [µs]", ylabel="wake-ups [-]")
     axes.legend()
-    figure.savefig(file, dpi=150)
+    saved(figure, file)

@@ -1,9 +1,34 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What every test starts from."""
 
+import functools
 import signal
+from collections.abc import Iterator
+from typing import Any
+
+import pictures
+import pytest
+from nanotouch._io import drawing
 
 
 def pytest_configure() -> None:
     """Let Ctrl-C through: a shell that runs the tests in the background ignores SIGINT, and so would all they start."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def every_series_is_seen() -> Iterator[None]:
+    """No figure is saved, by whatever the tests run in this process, that hides a series outside of its axes."""
+    shown = drawing._shown
+
+    @functools.cache
+    def watched(figure: Any) -> Any:
+        def savefig(self: Any, *args: Any, **kwargs: Any) -> None:
+            assert not pictures.hidden(self)
+            figure.savefig(self, *args, **kwargs)
+
+        return type("Figure", (shown(figure),), {"savefig": savefig, "__module__": drawing.__name__})
+
+    drawing._shown = watched
+    yield
+    drawing._shown = shown

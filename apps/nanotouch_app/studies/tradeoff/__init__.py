@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measure speed and accuracy on this machine. Measured are every contact model and tier over lambda and load; the
-plans of every preset over the accuracy demanded, alone and in the loop; and the simulated rig over loop rate, model
-and sub-step."""
+"""Measure accuracy against processor time on this machine: of the force at the hand over a whole touch (contact law,
+tier, probe model, substep, loop rate, noise, calibration), of every contact model and tier over lambda and load, and of
+the plans of every preset over the accuracy demanded."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from nanotouch.plots import saved
 from nanotouch.touch.record import write_csv
 
 from nanotouch_app import output
-from nanotouch_app.studies.tradeoff import answer, drawing, errors, measure, page, plans, plant
+from nanotouch_app.studies.tradeoff import answer, drawing, errors, laws, measure, page, plans, touch
 
 FILES = (
-    "tradeoff.png", "tradeoff.csv", "laws.csv", "loop.csv", "errormap.csv", "errormap.png", "plans.csv", "plans.png",
-    "plant.csv",
+    "tradeoff.png", "tradeoff.csv", "laws.png", "laws.csv", "calls.csv", "errormap.csv", "errormap.png", "plans.csv",
+    "plans.png",
 )  # fmt: skip
 
 
@@ -46,42 +46,31 @@ def run(args: argparse.Namespace) -> int:
             rows = measure.trade(args.quick, progress)
         with output.progress_bar("plans") as progress:
             planned = plans.trade(args.quick, progress)
-        with output.progress_bar("plans in the loop") as progress:
-            felt = plant.plans(args.quick, progress)
-        with output.progress_bar("simulated rig") as progress:
-            ways = plant.trade(args.quick, progress)
-        points = answer.points(rows, felt, 3 if args.quick else 200)
-        _write(out, "nanotouch tradeoff" + (" --quick" if args.quick else ""), maps, rows, planned, felt, ways, points)
+        with output.progress_bar("whole touch") as progress:
+            touched = touch.trade(args.quick, progress)
+        points = laws.points(rows, 3 if args.quick else 200)
+        found = page.Measured(maps, rows, planned, touched, points, laws.extremes())
+        _write(out, "nanotouch tradeoff" + (" --quick" if args.quick else ""), found)
         if args.doc:
-            page.write(args.doc, maps, rows, planned, felt, ways, points)
-        args.answer = {"points": answer.columns(points), "folder": str(out), "files": list(FILES)}
-        print(answer.sentences(points))
+            page.write(args.doc, found)
+        args.answer = {"touch": touch.columns(touched), "folder": str(out), "files": list(FILES)}
+        print(answer.sentences(touched))
         print(page.summary(rows))
         print(plans.summary(planned))
-        print(plant.summary(ways))
         print(f"written to {out}/: {', '.join(FILES)}" + (f"; {args.doc}" if args.doc else ""))
     return 0
 
 
-def _write(
-    out: Path,
-    how: str,
-    maps: measure.Maps,
-    rows: list[measure.Row],
-    planned: list[plans.Row],
-    felt: list[plant.Planned],
-    ways: list[plant.Row],
-    points: list[answer.Point],
-) -> None:
+def _write(out: Path, how: str, found: page.Measured) -> None:
     """All tables and pictures."""
     command = {"command": how}
     loads = {f"loads, {name}": words for name, words in errors.WORDS.items()}
-    write_csv(out / "laws.csv", measure.trade_columns(rows), command | loads)
-    write_csv(out / "tradeoff.csv", answer.columns(points), command)
-    write_csv(out / "loop.csv", plant.plan_columns(felt), command | {"against": "everything exact"})
-    write_csv(out / "errormap.csv", measure.map_columns(maps), command | {"against": "exact Maugis-Dugdale"})
-    write_csv(out / "plans.csv", plans.columns(planned), command | {"against": "nanotouch.reference"})
-    write_csv(out / "plant.csv", plant.columns(ways), command | {"against": "the dynamic probe, finest sub-step"})
-    saved(answer.draw(points), out / "tradeoff.png", dpi=140)
-    saved(drawing.maps(maps), out / "errormap.png", dpi=140)
-    saved(plans.draw(planned), out / "plans.png", dpi=140)
+    write_csv(out / "tradeoff.csv", touch.columns(found.touch), command | {"against": "the finest of everything"})
+    write_csv(out / "laws.csv", measure.trade_columns(found.rows), command | loads)
+    write_csv(out / "calls.csv", laws.columns(found.points), command)
+    write_csv(out / "errormap.csv", measure.map_columns(found.maps), command | {"against": "exact Maugis-Dugdale"})
+    write_csv(out / "plans.csv", plans.columns(found.planned), command | {"against": "nanotouch.reference"})
+    saved(answer.draw(found.touch), out / "tradeoff.png", dpi=140)
+    saved(laws.draw(found.points, found.extremes), out / "laws.png", dpi=140)
+    saved(drawing.maps(found.maps), out / "errormap.png", dpi=140)
+    saved(plans.draw(found.planned), out / "plans.png", dpi=140)

@@ -10,17 +10,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from nanotouch import Plan, Scene, presets, reference
-from nanotouch.errors import InvalidValue, require
-from nanotouch.plots import new_figure
+from nanotouch.errors import InvalidValue
+from nanotouch.plots import BLUE, VERMILION, new_figure
 from numpy.typing import NDArray
 
 from nanotouch_app.scenes import PRESETS
+from nanotouch_app.studies.tradeoff.drawing import Label, label, logarithmic, settle
 
 ACCURACIES = tuple(float(f"{digit}e{power}") for power in range(-1, -11, -1) for digit in (3, 1))
 """0.3 .. 1e-10"""
 ROUNDING = 1e-12
 """smaller errors are those of arithmetic, on this machine"""
 POINTS = 150
+DEFORMS = ", the sample deforms"
 REFUSED = "refused: the best bound is as given"
 
 
@@ -68,7 +70,7 @@ def _rows(name: str, scene: Scene, accuracies: tuple[float, ...]) -> Iterator[Ro
             math.nan if deforms else max(_error(plan, path, truth[history], history) for history, path in paths.items())
         )
         forms = ", ".join(f"{term.name.replace('_', ' ')} {term.form}" for term in plan.terms)
-        forms += ", the sample deforms" if deforms and "deformed" not in forms else ""
+        forms += DEFORMS if deforms and "deformed" not in forms else ""
         rigid = facts["rigid_error"] + facts["around_error"]
         yield Row(name, accuracy, plan.cost, exact.cost, plan.bound, rigid, error, forms)
 
@@ -155,25 +157,33 @@ def summary(rows: list[Row]) -> str:
 
 
 def draw(rows: list[Row]) -> Any:
-    """One panel: at which cost each preset keeps which bound, and how far the plan really is off."""
-    figure = new_figure(9.5, 6.0)
-    panel = figure.subplots()
-    for name in PRESETS:
+    """A panel for each preset: what a plan promises and how far it really is off, over what it costs. Points bear the
+    forms of contact and van der Waals."""
+    figure = new_figure(16.0, 8.0)
+    panels = figure.subplots(2, math.ceil(len(PRESETS) / 2), sharex=True, sharey=True).ravel()
+    for panel, name in zip(panels, PRESETS, strict=False):
         kinds = [step[0] for step in steps(rows) if step[0].preset == name and step[0].forms != REFUSED]
-        costs, bounds = [row.cost for row in kinds], [row.bound for row in kinds]
-        # a plan serves demands down to its bound
-        (line,) = panel.step([ACCURACIES[0], *bounds], [costs[0], *costs], where="pre", label=name.replace("_", " "))
-        panel.plot(bounds, costs, "o", color=line.get_color())
-        panel.plot([max(row.error, ROUNDING) for row in kinds], costs, "x", color=line.get_color())
-    panel.set_xscale("log")
-    panel.set_yscale("log")
-    panel.set_xlim(1.0, 0.4 * ROUNDING)
-    ticks = (10, 20, 50, 100, 200)
-    panel.set_yticks(ticks, [f"{tick}" for tick in ticks])
-    panel.set_ylim(8.0, 250.0)
-    panel.yaxis.set_minor_formatter(require("matplotlib.ticker", "app").NullFormatter())
-    panel.set_xlabel("|ΔF| / max(|F|, pull-off force) [-]: demanded (line), bound (dots), error (crosses)")
-    panel.set_ylabel("cost of one evaluation [Hertz evaluations]")
-    panel.grid(alpha=0.3)
-    figure.legend(loc="outside upper center", ncols=4, frameon=False, fontsize="small")
+        measured = [row for row in kinds if not math.isnan(row.error)]
+        panel.plot([row.cost for row in kinds], [row.bound for row in kinds], "o", color=BLUE, label="bound of a plan")
+        if measured:
+            panel.plot([row.cost for row in measured], [max(row.error, ROUNDING) for row in measured], "x",
+                       color=VERMILION, label="its error against nanotouch.reference")  # fmt: skip
+        logarithmic(panel)
+        panel.set_title(name.replace("_", " "), loc="left", fontsize="small")
+    for panel in panels[-(len(panels) // 2) :]:
+        panel.set_xlabel("cost of one evaluation [Hertz evaluations]")
+    figure.supylabel("over max(|F|, pull-off force) [-]", fontsize="medium")
+    handles, names = panels[0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside upper center", ncols=2, frameon=False, fontsize="small")
+    settle(figure)
+    for panel, name in zip(panels, PRESETS, strict=False):
+        kinds = [step[0] for step in steps(rows) if step[0].preset == name and step[0].forms != REFUSED]
+        label(panel, [Label(row.cost, row.bound, _short(row)) for row in kinds])
     return figure
+
+
+def _short(row: Row) -> str:
+    """The forms of contact and van der Waals, which every preset has, and how many other laws."""
+    forms = [form.removeprefix("contact ").removeprefix("vdw ") for form in row.forms.removesuffix(DEFORMS).split(", ")]
+    more = f" + {len(forms) - 2}" if len(forms) > 2 else ""
+    return ", ".join(forms[:2]) + more + (", deforms" if row.forms.endswith(DEFORMS) else "")

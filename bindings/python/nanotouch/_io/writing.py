@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import csv
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -56,9 +57,10 @@ def write_csv(
     rows = min((len(values) for values in columns.values()), default=0)
     with replacing(path) as part, open(part, "w", encoding="utf-8", newline="\n") as file:
         file.writelines(f"# {key}: {value}\n" for key, value in comments.items())
-        file.write(",".join(columns) + "\n")
+        table = csv.writer(file, lineterminator="\n")  # quotes a name that has a comma
+        table.writerow(columns)
         for start in range(0, rows, BLOCK_ROWS):
             block = [np.asarray(values[start : start + BLOCK_ROWS]).tolist() for values in columns.values()]
-            file.writelines(",".join(map(str, row)) + "\n" for row in zip(*block, strict=True))
+            table.writerows(zip(*block, strict=True))
             if progress:
                 progress(min(1.0, (start + BLOCK_ROWS) / rows))
