@@ -67,9 +67,10 @@ def state_band(panel: Any, recording: Recording, axis: Floats) -> None:
         return
     states = recording.state
     edges = np.flatnonzero(np.diff(states)) + 1
+    named: set[int] = set()
     for first, last in zip([0, *edges], [*edges, len(states)], strict=True):
-        if states[first] in STATE_COLOURS:
-            panel.axvspan(axis[first], axis[last - 1], color=STATE_COLOURS[states[first]], alpha=0.25, lw=0.5)
-    for state in np.unique(states):
+        state = int(states[first])
         if state in STATE_COLOURS:
-            panel.fill_between([], [], color=STATE_COLOURS[state], alpha=0.25, label=STATES[state])
+            label = None if state in named else STATES[state]
+            panel.axvspan(axis[first], axis[last - 1], color=STATE_COLOURS[state], alpha=0.25, lw=0.5, label=label)
+            named.add(state)
