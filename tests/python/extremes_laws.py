@@ -189,7 +189,9 @@ def _largest_root(coefficients: list[Any]) -> Any:
     lead = coefficients[0]
     far = 2 * max(abs(c / lead) ** (mpf(1) / n) for n, c in enumerate(coefficients) if n and c != 0)
     for _ in range(2000):
-        value, slope = mpmath.polyval(coefficients, far, derivative=True)
+        value = slope = mpf(0)
+        for coefficient in coefficients:
+            value, slope = value * far + coefficient, slope * far + value
         if slope <= 0:
             break
         nearer = far - value / slope

@@ -48,7 +48,10 @@ def values(kind: str, field: Any, usual: float, rng: np.random.Generator) -> Ite
         yield from (math.inf, -math.inf, math.nan)
     elif kind == "folds":
         for edge, out in ((field.minimum, -math.inf), (field.maximum, math.inf)):
-            yield from (edge, float(np.nextafter(edge, out)), float(np.nextafter(edge, -out)))
+            beside = (
+                math.copysign(TINY, way) if edge == 0.0 else float(np.nextafter(edge, way)) for way in (out, -out)
+            )
+            yield from (edge, *beside)
     else:
         yield (usual or math.sqrt(max(field.minimum, 1e-12) * field.maximum)) * 10.0 ** rng.uniform(-DECADES, DECADES)
 
@@ -167,13 +170,13 @@ def _fitted(point: dict[str, float], touching: int = 500, spoiled: float | None 
         step = depth / 500.0
         delta = np.concatenate([np.full(500, -1.0), np.arange(1, touching + 1) * step])
         force = 4.0 / 3.0 * modulus * math.sqrt(max(radius, 0.0)) * np.maximum(delta, 0.0) ** 1.5
+        deflection = force / spring if spring else np.zeros_like(force)
         height = np.where(
             delta < 0.0, (500.0 - np.arange(delta.size)) * step, -delta - force / spring if spring else -delta
         )
     if spoiled is not None:
         force[-10 if touching > 10 else 0] = spoiled
     nowhere = np.full(force.size, np.nan)
-    deflection = force / spring if spring else np.zeros_like(force)
     segment = Segment("approach", nowhere, height, "height (measured)", force, deflection)
     curve = ForceCurve((segment,), {"spring constant": spring}, "extreme")
     result = nt.fit.fit_curve(curve, "hertz", branch="approach", radius=radius)
