@@ -219,6 +219,8 @@ def by_slave(plot: Plot, d: Dice, judge: Judge) -> None:
     slope = d.log(0.05, 1.5) if d.chance(0.5) else 0.0
     plot.rig["stage.axes"], plot.scene["adhesion.work_of_adhesion"] = 3, 0.0
     plot.scene["adhesion.hamaker_constant"], plot.scene["medium.relative_humidity"] = 0.0, 0.0
+    plot.scene["friction.shear_strength"], plot.scene["friction.coefficient"] = 0.0, 0.0
+    judge.ground, judge.steepest = None, True  # of one slope everywhere
     x = np.arange(24) * 200e-9
     flat = np.tile(slope * x, (24, 1))
     plot.surface = nt.Surface(nt.Topography(flat, (200e-9, 200e-9)))
