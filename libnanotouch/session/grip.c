@@ -7,6 +7,7 @@
 #include "scene/parts.h"
 #include "session/grip.h"
 #include "session/well.h"
+#include "surface/extremes.h"
 
 enum { STEPS = 64, RADII = 9 };
 
@@ -141,28 +142,34 @@ static double worth_from(const worths *of, double radius)
     return most;
 }
 
-/* Cell by cell: no slope of a spline is above the differences of the coefficients that reach it, no value below the
- * least of them. */
+/* The least radius in a cell: no spline is below the coefficients that reach it [m]. */
+static double least_radius_in(const nt_plan *plan, long i, long j)
+{
+    const nt_surface *s = &plan->followed->ratio;
+    double least = HUGE_VAL;
+    for (long q = j > 0 ? j - 1 : 0; q <= j + 2 && q < s->ny; ++q)
+        for (long p = i > 0 ? i - 1 : 0; p <= i + 2 && p < s->nx; ++p)
+            least = fmin(least, s->coefficients[q * s->nx + p]);
+    return least * plan->contact.radius;
+}
+
+/* Cell by cell; a value of each first, so that few need a close look. */
 static double uneven_radii(const nt_plan *plan, double load)
 {
     const nt_surface *s = &plan->followed->ratio;
     const worths worth = worths_of(plan, load);
-    const double highest = worth_from(&worth, worth.sharpest);
+    const double R = plan->contact.radius;
     double most = 0.0;
     for (long j = 0; j + 1 < s->ny; ++j)
         for (long i = 0; i + 1 < s->nx; ++i) {
-            double x = 0.0, y = 0.0, least = HUGE_VAL;
-            for (long q = j > 0 ? j - 1 : 0; q <= j + 2 && q < s->ny; ++q)
-                for (long p = i > 0 ? i - 1 : 0; p <= i + 2 && p < s->nx; ++p) {
-                    const double *c = s->coefficients + q * s->nx + p;
-                    least = fmin(least, c[0]);
-                    x = p < i + 2 && p + 1 < s->nx ? fmax(x, fabs(c[1] - c[0])) : x;
-                    y = q < j + 2 && q + 1 < s->ny ? fmax(y, fabs(c[s->nx] - c[0])) : y;
-                }
-            const double steepest = x > 0.0 || y > 0.0 ? hypotenuse(x / s->dx, y / s->dy) : 0.0;
-            const double R = plan->contact.radius;
-            if (steepest * R * highest > most)
-                most = fmax(most, steepest * R * worth_from(&worth, least * R));
+            const nt_height_value at = nt_surface_height(s, ((double)i + 0.5) * s->dx, ((double)j + 0.5) * s->dy);
+            most = fmax(most, hypotenuse(at.zx, at.zy) * R * worth_from(&worth, at.z * R));
+        }
+    for (long j = 0; j + 1 < s->ny; ++j)
+        for (long i = 0; i + 1 < s->nx; ++i) {
+            const double pushes = R * worth_from(&worth, least_radius_in(plan, i, j));
+            if (pushes > 0.0)
+                most = fmax(most, pushes * nt_extremes_in_cell(s, i, j, most / pushes));
         }
     return most;
 }

@@ -366,3 +366,20 @@ nt_extremes nt_extremes_in_area(const nt_surface *surface, const nt_fields *fiel
     search_area(&s, x, y, fields, range);
     return extremes_of(&s, fields, range);
 }
+
+double nt_extremes_in_cell(const nt_surface *surface, long i, long j, double enough_slope)
+{
+    search s = search_of(surface, 0);
+    const cells c = {{i, j}, {i, j}};
+    const double dx = surface->dx, dy = surface->dy;
+    const piece p = {((double)i + 0.5) * dx, ((double)j + 0.5) * dy, 0.5 * dx, 0.5 * dy};
+    derivatives d;
+    derivatives_of(surface, &c, 1, &d);
+    const double roughly = hypotenuse(d.of[1][0], d.of[0][1]);
+    s.found[STEEPEST] = enough_slope;
+    if (roughly <= enough(&s, STEEPEST))
+        return roughly;
+    derivatives_of(surface, &c, 3, &d);
+    halve(&s, STEEPEST, &d, p, HALVINGS);
+    return fmax(s.found[STEEPEST], s.bound[STEEPEST]);
+}

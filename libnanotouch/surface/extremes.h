@@ -25,5 +25,8 @@ nt_extremes nt_extremes_on_path(const nt_surface *surface, const nt_fields *fiel
 /* Over the rectangle x[0] .. x[1], y[0] .. y[1] on the surface [m]. */
 nt_extremes nt_extremes_in_area(const nt_surface *surface, const nt_fields *fields, const double x[2],
                                 const double y[2]);
+/* The steepest slope in the cell right of and above the pixel i, j, at most; no closer than is needed to know that it
+ * is at most `enough` [-]. */
+double nt_extremes_in_cell(const nt_surface *surface, long i, long j, double enough);
 
 #endif

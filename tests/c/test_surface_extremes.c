@@ -151,6 +151,28 @@ static void noise_is_never_above_its_bounds(void **state)
     assert_true(found.steepest >= steepest && found.steepest <= 1.01 * steepest);
 }
 
+/* Of one cell: never below what is there, and close to it where that is asked; where less is enough no more than that.
+ */
+static void cells_of_noise(void **state)
+{
+    (void)state;
+    const nt_surface surface = surface_of(noise, SMALL_X, SMALL_Y);
+    for (long j = 0; j + 1 < SMALL_Y; j++)
+        for (long i = 0; i + 1 < SMALL_X; i++) {
+            double steepest = 0.0;
+            for (int k = 0; k <= DENSE * DENSE; k++) {
+                const double x = ((double)i + k % DENSE / (DENSE - 1.0)) * DX;
+                const double y = ((double)j + smaller(1.0, k / DENSE / (DENSE - 1.0))) * DY;
+                const nt_height_value at = nt_surface_height(&surface, x, y);
+                steepest = larger(steepest, hypot(at.zx, at.zy));
+            }
+            const double found = nt_extremes_in_cell(&surface, i, j, 0.0);
+            assert_true(found >= steepest * (1.0 - 1e-12) && found <= 1.02 * steepest);
+            const double enough = 2.0 * steepest;
+            assert_in_range((long)(1e6 * nt_extremes_in_cell(&surface, i, j, enough) / steepest), 1000000, 2002001);
+        }
+}
+
 /* Random paths of three legs over noise, across pixels and borders of pixels. */
 static void paths_over_noise(void **state)
 {
@@ -237,6 +259,7 @@ int main(void)
         cmocka_unit_test(a_trough_in_the_middle),
         cmocka_unit_test(a_ball),
         cmocka_unit_test(noise_is_never_above_its_bounds),
+        cmocka_unit_test(cells_of_noise),
         cmocka_unit_test(paths_over_noise),
         cmocka_unit_test(points_and_levels),
         cmocka_unit_test(fields_that_reach),
