@@ -9,6 +9,9 @@
 #include "session/well.h"
 #include "surface/extremes.h"
 
+#define CLOSE 1.002      /* of a push: no closer is looked */
+#define CLOSE_RATIO 0.01 /* of a ratio of radii, which is 0.1 or more at each pixel */
+
 enum { STEPS = 64, RADII = 9 };
 
 /* A place of the sharpest or the bluntest contact, on the softest or the hardest sample. */
@@ -167,11 +170,14 @@ static double uneven_radii(const nt_plan *plan, double load)
         }
     for (long j = 0; j + 1 < s->ny; ++j)
         for (long i = 0; i + 1 < s->nx; ++i) {
-            const double pushes = R * worth_from(&worth, least_radius_in(plan, i, j));
+            double pushes = R * worth_from(&worth, least_radius_in(plan, i, j));
+            if (!(pushes > 0.0 && pushes * nt_extremes_in_cell(s, i, j, most / pushes) > CLOSE * most))
+                continue;
+            pushes = R * worth_from(&worth, R * nt_extremes_lowest_in_cell(s, i, j, CLOSE_RATIO));
             if (pushes > 0.0)
                 most = fmax(most, pushes * nt_extremes_in_cell(s, i, j, most / pushes));
         }
-    return most;
+    return CLOSE * most;
 }
 
 double nt_grip_uneven(const nt_plan *plan, double load)

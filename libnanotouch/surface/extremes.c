@@ -367,12 +367,15 @@ nt_extremes nt_extremes_in_area(const nt_surface *surface, const nt_fields *fiel
     return extremes_of(&s, fields, range);
 }
 
+static piece cell_at(const nt_surface *s, long i, long j)
+{
+    return (piece){((double)i + 0.5) * s->dx, ((double)j + 0.5) * s->dy, 0.5 * s->dx, 0.5 * s->dy};
+}
+
 double nt_extremes_in_cell(const nt_surface *surface, long i, long j, double enough_slope)
 {
     search s = search_of(surface, 0);
     const cells c = {{i, j}, {i, j}};
-    const double dx = surface->dx, dy = surface->dy;
-    const piece p = {((double)i + 0.5) * dx, ((double)j + 0.5) * dy, 0.5 * dx, 0.5 * dy};
     derivatives d;
     derivatives_of(surface, &c, 1, &d);
     const double roughly = hypotenuse(d.of[1][0], d.of[0][1]);
@@ -380,6 +383,17 @@ double nt_extremes_in_cell(const nt_surface *surface, long i, long j, double eno
     if (roughly <= enough(&s, STEEPEST))
         return roughly;
     derivatives_of(surface, &c, 3, &d);
-    halve(&s, STEEPEST, &d, p, HALVINGS);
+    halve(&s, STEEPEST, &d, cell_at(surface, i, j), HALVINGS);
     return fmax(s.found[STEEPEST], s.bound[STEEPEST]);
+}
+
+double nt_extremes_lowest_in_cell(const nt_surface *surface, long i, long j, double close)
+{
+    search s = search_of(surface, 0);
+    const cells c = {{i, j}, {i, j}};
+    derivatives d;
+    s.close[0] = close;
+    derivatives_of(surface, &c, 3, &d);
+    halve(&s, LOWEST, &d, cell_at(surface, i, j), HALVINGS);
+    return -fmax(s.found[LOWEST], s.bound[LOWEST]);
 }

@@ -28,5 +28,7 @@ nt_extremes nt_extremes_in_area(const nt_surface *surface, const nt_fields *fiel
 /* The steepest slope in the cell right of and above the pixel i, j, at most; no closer than is needed to know that it
  * is at most `enough` [-]. */
 double nt_extremes_in_cell(const nt_surface *surface, long i, long j, double enough);
+/* The lowest place there, at least; at most so far below it [m]. */
+double nt_extremes_lowest_in_cell(const nt_surface *surface, long i, long j, double close);
 
 #endif

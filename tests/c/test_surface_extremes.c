@@ -159,13 +159,16 @@ static void cells_of_noise(void **state)
     const nt_surface surface = surface_of(noise, SMALL_X, SMALL_Y);
     for (long j = 0; j + 1 < SMALL_Y; j++)
         for (long i = 0; i + 1 < SMALL_X; i++) {
-            double steepest = 0.0;
-            for (int k = 0; k <= DENSE * DENSE; k++) {
+            double steepest = 0.0, lowest = 1.0;
+            for (int k = 0; k < DENSE * DENSE; k++) {
                 const double x = ((double)i + k % DENSE / (DENSE - 1.0)) * DX;
-                const double y = ((double)j + smaller(1.0, k / DENSE / (DENSE - 1.0))) * DY;
+                const double y = ((double)j + (double)(k / DENSE) / (DENSE - 1.0)) * DY;
                 const nt_height_value at = nt_surface_height(&surface, x, y);
                 steepest = larger(steepest, hypot(at.zx, at.zy));
+                lowest = smaller(lowest, at.z);
             }
+            const double low = nt_extremes_lowest_in_cell(&surface, i, j, 3e-11);
+            assert_true(low <= lowest + 1e-21 && low >= lowest - 4e-11);
             const double found = nt_extremes_in_cell(&surface, i, j, 0.0);
             assert_true(found >= steepest * (1.0 - 1e-12) && found <= 1.02 * steepest);
             const double enough = 2.0 * steepest;
