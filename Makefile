@@ -63,10 +63,10 @@ sanitize-sample:  ## the same over what crosses a border and is soon built: fore
 	@tools/setup.sh sanitize
 	@JOBS=$(JOBS) tools/sanitize.sh sample
 
-mutate:  ## whether the tests notice small faults: a seeded sample of mutants of C and Python; SEED, COUNT; some ten minutes
+mutate:  ## whether the tests notice small faults: a seeded sample of mutants by folder, of C and Python; SEED, COUNT; half an hour
 	@tools/setup.sh mutate
-	@$(VENV)/python tools/mutate c --count $(or $(COUNT),400) --seed $(or $(SEED),1)
-	@$(VENV)/python tools/mutate python --count $(or $(COUNT),200) --seed $(or $(SEED),1)
+	@$(VENV)/python tools/mutate c libnanotouch/control libnanotouch/session libnanotouch/hal --count $(or $(COUNT),100) --seed $(or $(SEED),1)
+	@$(VENV)/python tools/mutate python --count $(or $(COUNT),20) --seed $(or $(SEED),1)
 
 damage:  ## 2000 damaged files through the readers of images and curves; some minutes
 	@tools/setup.sh test

@@ -138,6 +138,48 @@ static void where_nothing_can_be_told(void **state)
     assert_true(isnan(nt_margins_calm(&rig, &settings, 600.0).margin));
 }
 
+/* A step of the deflection's converter is whole, however little it is at the hand, and does not keep time. */
+static void a_step_of_the_probe_is_whole(void **state)
+{
+    (void)state;
+    nt_settings settings;
+    nt_rig rig = quiet(&settings);
+    rig.probe.resolution = 1e-3;
+    settings.gains.force_filter = 10.0;
+    settings.gains.alpha_f = 1e4;
+    const double step = 1e4 * 8.0 * rig.probe.sensitivity * 1e-3;
+    const nt_calm found = nt_margins_calm(&rig, &settings, 600.0);
+    assert_true(fabs(found.parts[NT_RIPPLE_PROBE] / step - 1.0) < 1e-12 &&
+                found.ripple == found.parts[NT_RIPPLE_PROBE]);
+}
+
+/* The least margin names its rule; where there is none, or no number, the first. */
+static void which_rule_it_is(void **state)
+{
+    (void)state;
+    nt_settings settings;
+    nt_rig rig = quiet(&settings);
+    nt_rig coarse = rig, heavy = rig;
+    coarse.master.resolution = 1e-2;
+    heavy.master.mass = 1.0;
+    heavy.master.damping = 0.5; /* below 1 N s/m it is still one */
+    settings.limits.stage_speed = 20e-6;
+    assert_string_equal(nt_margins_calm(&coarse, &settings, 600.0).rule, "ripple");
+    settings.gains.alpha_f = 1e4;
+    assert_string_equal(nt_margins_calm(&heavy, &settings, 600.0).rule, "ringing");
+    rig.master.resolution = 1e-6;
+    settings.limits.stage_speed = settings.gains.alpha_p * 1e-6 / 1.5; /* 1.5 s for a step */
+    const nt_calm slow = nt_margins_calm(&rig, &settings, 600.0);
+    assert_string_equal(slow.rule, "slewing");
+    assert_true(fabs(slow.margin * 1.5 / slow.slewing - 1.0) < 1e-12);
+    settings.limits.stage_speed = settings.gains.alpha_p * 1e-6 / 0.5; /* half a second: the same */
+    const nt_calm faster = nt_margins_calm(&rig, &settings, 600.0);
+    assert_true(fabs(faster.margin * 1.5 / faster.slewing - 1.0) < 1e-12);
+    assert_string_equal(nt_margins_calm(&rig, &settings, 0.0).rule, "ripple");
+    rig.master.damping = 0.0;
+    assert_string_equal(nt_margins_calm(&rig, &settings, 600.0).rule, "ripple");
+}
+
 /* Just four steps of the command at once keep no time; a dead time of 10 000 periods is still one. */
 static void borders_of_what_is_reckoned(void **state)
 {
@@ -169,6 +211,8 @@ int main(void)
         cmocka_unit_test(a_slow_stage_costs_margin),
         cmocka_unit_test(where_nothing_can_be_told),
         cmocka_unit_test(borders_of_what_is_reckoned),
+        cmocka_unit_test(a_step_of_the_probe_is_whole),
+        cmocka_unit_test(which_rule_it_is),
         cmocka_unit_test(steps_of_the_command_may_keep_time_with_the_resonance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -31,6 +31,13 @@ static void equation_19_is_kept(void **state)
     const double full = nt_margins_felt_alpha_f(&rig, &settings, 1e-9, 0.999e-6, 1e-3);
     assert_true(fabs(full / 10e6 - 1.0) < 1e-9);
     assert_true(nt_margins_felt_alpha_f(&rig, &settings, 1e-6, 1e-6, STIFFNESS) == settings.gains.alpha_f);
+    nt_rig weak = rig; /* as far as gauge and motor both reach */
+    weak.master.max_force = 4.0;
+    assert_true(fabs(nt_margins_felt_alpha_f(&weak, &settings, 1e-9, 0.999e-6, 1e-3) / 8e6 - 1.0) < 1e-9);
+    weak.master.gauge = 0;
+    weak.master.max_force = 6.0;
+    settings.gains.force_gain = 0.0;
+    assert_true(fabs(nt_margins_felt_alpha_f(&weak, &settings, 1e-9, 0.999e-6, 1e-3) / 12e6 - 1.0) < 1e-9);
 }
 
 /* A coarse master ripples, a late link is near its limit: as much as leaves neither, and 3 % more does not. */
@@ -48,6 +55,8 @@ static void it_is_as_much_as_is_stable_and_calm(void **state)
         const double highest = NT_CLEARLY_FELT / (0.93 * 18e-9);
         settings.gains.alpha_f = nt_margins_felt_alpha_f(&rig, &settings, 18e-9, 0.4e-6, STIFFNESS);
         assert_true(settings.gains.alpha_f > plain && settings.gains.alpha_f < 1.6e7);
+        const double halvings = 256.0 * log(settings.gains.alpha_f / plain) / log(highest / plain);
+        assert_true(fabs(halvings - round(halvings)) < 1e-6);
         for (int more = 0; more < 2; more++) {
             nt_margins margins;
             const nt_verdict verdict = nt_margins_judge(&rig, &settings, STIFFNESS, NT_MODE_TOUCH, &margins);

@@ -291,7 +291,11 @@ static void every_term_of_the_guarantee(void **state)
         const nt_hazard hazard = drawn_hazard(&random);
         settings.gains.stage_integral *= i % 5 != 0;
         settings.limits.lateral_speed *= i % 7 != 0;
-        if (i % 11 == 0) { /* almost hidden in the noise, or quite */
+        if (i % 8 == 0)
+            settings.gains.stage_integral *= 1e-3; /* below 1/s it is still one */
+        if (i % 10 == 0)
+            rig.stage.quality = between(&random, 0.3, 0.5); /* does not ring */
+        if (i % 11 == 0) {                                  /* almost hidden in the noise, or quite */
             rig.probe.noise = between(&random, 0.5, 10.0);
             settings.limits.force = between(&random, 1e-7, 1e-6);
         }
@@ -304,7 +308,7 @@ static void every_term_of_the_guarantee(void **state)
         if (i % 9 == 0) /* a read-out so coarse that it decides when a sensor is dead */
             rig.stage.resolution = 1e-6;
         rig.stage.axes = i % 4 ? 3.0 : 1.0;
-        rig.probe.lateral_stiffness *= i % 3 != 0;
+        rig.probe.lateral_stiffness *= i % 3 == 0 ? 0.0 : i % 3 == 1 ? 1.0 : 0.01;
         check_terms(&rig, &settings, &hazard, i % 2 ? HUGE_VAL : between(&random, 1e-10, 1e-8));
     }
 }

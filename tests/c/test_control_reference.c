@@ -12,6 +12,7 @@
 #include "../reference/sideways_table.h"
 #include "larger.h"
 #include "nanotouch/margins.h"
+#include "nanotouch/servo.h"
 
 enum { CASES = sizeof loop_cases / sizeof loop_cases[0], STIFFNESS = sizeof loop_cases[0].in / sizeof(double) - 1 };
 
@@ -48,6 +49,7 @@ static void margins_are_those_of_the_whole_matrix(void **state)
         COMPARE(row, found, force_noise, 1e-12);
         COMPARE(row, found, height_margin, 1e-9);
         COMPARE(row, found, exact_limit, 1e-6); /* a radius of 1 + 1e-10 was looked for */
+        COMPARE(row, found, exact_frequency, 1e-6);
         COMPARE(row, found, force_gain_limit, 1e-6);
         COMPARE(row, found, integral_limit, 1e-6);
         COMPARE(row, found, coupling_margin, 1e-6);
@@ -107,10 +109,47 @@ static void sideways_margins_are_those_of_the_whole_matrix(void **state)
     assert_true(exact_ones >= 4);
 }
 
+/* Friction, stick or slope that is next to nothing counts as none; on a flat without friction nothing ties the axes. */
+static void what_is_next_to_nothing(void **state)
+{
+    (void)state;
+    const sideways_case *row = &sideways_cases[0];
+    nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    set_loop(row->in, &rig, &settings);
+    const double k = row->in[STIFFNESS], *in = &row->in[STIFFNESS + 1];
+    const nt_sideways_contact own = {in[0], in[1], in[2], in[3], in[4]};
+    const nt_margins far = {.loop_stiffness = 1.0, .loop_delay = 1.0, .stability_limit = 1e300, .margin = 1e300};
+    for (int i = 0; i < 8; ++i) {
+        nt_sideways_contact some = {i & 1 ? own.stick : 0.0, i & 2 ? own.grip : 0.0, i & 4 ? own.slope : 0.0, 0.0, 0.0};
+        const nt_sideways_margins none = nt_margins_sideways(&rig, &settings, k, &some, &far);
+        some.stick = larger(some.stick, 1e-9);
+        some.grip = larger(some.grip, 1e-9);
+        some.slope = larger(some.slope, 1e-12);
+        const nt_sideways_margins little = nt_margins_sideways(&rig, &settings, k, &some, &far);
+        if (i & 6) {
+            compare("a contact", "coupled_margin", little.coupled_margin, none.coupled_margin, 1e-6);
+            continue;
+        }
+        assert_true(none.coupling == 0.0 && (i ? fabs(none.coupled_margin / none.margin - 1.0) < 1e-12 : 1));
+    }
+    settings.control =
+        (nt_control){NT_CONTROL_OWN, nt_servo_default, NULL}; /* a law of one's own as what it amounts to */
+    const nt_sideways_margins its = nt_margins_sideways(&rig, &settings, k, &own, &far);
+    settings.gains.force_gain = 77.0; /* of the settings, which this law does not ask */
+    settings.control.law = nt_servo_impedance;
+    const nt_sideways_margins blind = nt_margins_sideways(&rig, &settings, k, &own, &far);
+    settings.control = (nt_control){.choice = NT_CONTROL_IMPEDANCE};
+    const nt_sideways_margins same = nt_margins_sideways(&rig, &settings, k, &own, &far);
+    compare("own law", "coupled_margin", its.coupled_margin, smaller(row->margin, row->together), 1e-6);
+    compare("own impedance", "coupled_margin", blind.coupled_margin, same.coupled_margin, 1e-6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sideways_margins_are_those_of_the_whole_matrix),
+        cmocka_unit_test(what_is_next_to_nothing),
         cmocka_unit_test(margins_are_those_of_the_whole_matrix),
         cmocka_unit_test(calm_is_that_of_the_whole_matrix),
     };

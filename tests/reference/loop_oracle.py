@@ -253,6 +253,12 @@ def limit(radius: Any, low: float, high: float, margin: float = 1e-10) -> float:
     return math.inf
 
 
+def frequency(matrix: Floats, period: float) -> float:
+    """At which it oscillates whose largest root lies on the circle [Hz]."""
+    roots = np.linalg.eigvals(matrix)
+    return abs(float(np.angle(roots[np.argmax(np.abs(roots))]))) / (2.0 * math.pi * period)
+
+
 def margins(p: SimpleNamespace, limits: bool = True) -> dict[str, float]:
     """All of nt_margins; without the exact limits what is a sum."""
     hand = (p.hand_mass, p.hand_damping, p.hand_stiffness)
@@ -284,6 +290,10 @@ def margins(p: SimpleNamespace, limits: bool = True) -> dict[str, float]:
     hands = [hand, (0.0, 0.0, 0.0), (RELEASED, 0.0, 0.0)] if p.gains_coupling_stiffness else [hand]
     kappa = [limit(lambda g, h=h: Loop(p, g, p.K_f, h).radius(), 1e-3 * p.k_r, 1e6 * p.k_r) for h in hands]
     found["exact_limit"] = (1.0 + p.K_f) * min(kappa) * softens
+    worst = hands[int(np.argmin(kappa))]
+    found["exact_frequency"] = (
+        frequency(Loop(p, min(kappa), p.K_f, worst).A, p.T) if min(kappa) < math.inf else math.nan
+    )
     gains = [limit(lambda g, k=k, h=h: Loop(p, k, g, h).radius(), 1e-3, 1e4, 1e-9)
              for h in hands for k in (0.0, p.k_r)]  # fmt: skip
     found["force_gain_limit"] = min(gains)
