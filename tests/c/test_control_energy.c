@@ -18,12 +18,13 @@ static void energy_of_a_period(void **unused)
     (void)unused;
     for (int i = 0; i < 8; ++i) {
         nt_touch touch = plain(NT_MODE_TOUCH);
-        touch.settings.gains.coupling_stiffness = i & 1 ? 6.0 : 0.0;
+        touch.settings.gains.coupling_stiffness = i & 1 ? 0.5 : 0.0;
         touch.rig.master.gauge = !(i & 2);
         touch.rig.master.motor = !(i & 4);
         touch.passivity.credit = i & 2 ? 3.0 : 0.0;
         touch.delay = 2u;
         nt_touch_state state = begun(&touch);
+        state.passivity.gain = 0.5;
         state.ticks = 10u;
         state.sent[7][NT_Z] = 5.0; /* 10 - 1 - 2 */
         state.signals.felt_force = 7.0;
@@ -35,6 +36,7 @@ static void energy_of_a_period(void **unused)
         nt_observe(&touch, &state, &sample);
         const double in = i & 2 ? (-5.5 + 3.0 * 32.0) * 4.0 : 0.5 * (3.0 + 4.0) * 4.0;
         const double before = i & 1 ? 28.0 : 4.0 * 3.0, after = i & 1 ? 28.0 : 4.0 * 5.0, way = i & 1 ? 4.0 : 3.0 / 0.5;
+        assert_true(state.signals.gain_factor == (i & 4 ? 1.0 : 0.5));
         assert_true(state.passivity.energy - from == (i & 4 ? 0.0 : in - 0.5 * (before + after) * way));
     }
 }
@@ -97,12 +99,31 @@ static void a_mode_that_is_left(void **unused)
     assert_true(state.mode == NT_MODE_TOPOGRAPHY && state.phase == NT_PHASE_DOWN);
 }
 
+/* Sideways, too, only where a loop closes through the hand. */
+static void energy_sideways_of_a_period(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < 4; ++i) {
+        nt_touch touch = plain(NT_MODE_TOUCH);
+        touch.feels_sideways = touch.leads_sideways = 1;
+        touch.rig.master.motor = !(i & 1);
+        touch.passivity_sideways.credit = 1.0;
+        nt_touch_state state = begun(&touch);
+        nt_sample sample = read_of(0.0, 0.0, 0.0, 0.0);
+        nt_observe(&touch, &state, &sample);
+        state.gaps.force = i & 2 ? 1u : 0u;
+        sample.master_position[NT_X] = 2.0;
+        sample.stage_position[NT_X] = 1.0;
+        nt_observe(&touch, &state, &sample);
+        assert_true((state.passivity_sideways[NT_X].energy != 0.0) == (i == 0));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(energy_of_a_period),
-        cmocka_unit_test(what_is_not_counted),
-        cmocka_unit_test(a_hand_that_is_not_seen_sideways),
+        cmocka_unit_test(energy_of_a_period),  cmocka_unit_test(energy_sideways_of_a_period),
+        cmocka_unit_test(what_is_not_counted), cmocka_unit_test(a_hand_that_is_not_seen_sideways),
         cmocka_unit_test(a_mode_that_is_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -54,6 +54,33 @@ static void a_force_fades_in_a_line(void **state)
     assert_true(time < 60 * touch.period);
 }
 
+/* A small force fades as a large one does; what is left of it at last is gone; what was taken away does not come back.
+ */
+static void a_small_force_fades(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    nt_touch touch;
+    assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL), NT_OK);
+    nt_touch_state fades = nt_touch_start(&touch, 0.0, 0.0, 0.0);
+    for (int side = -1; side <= 1; side += 2) {
+        fades.fade.left = 0.5;
+        fades.fade.from[NT_Z] = side * 0.5;
+        fades.command.motor_force[NT_Z] = side * 0.5;
+        assert_true(nt_motor_faded(&touch, &fades, NT_Z, 0.0) == side * 0.25);
+        const double braked = 0.25 - 0.5 * rig.master.damping * 1e-3;
+        assert_true(fabs(nt_motor_faded(&touch, &fades, NT_Z, side * 1e-3) - side * braked) < 1e-15);
+        fades.command.motor_force[NT_Z] = side * 0.1;
+        assert_true(nt_motor_faded(&touch, &fades, NT_Z, 0.0) == side * 0.1);
+        fades.command.motor_force[NT_Z] = -side * 0.1;
+        assert_true(nt_motor_faded(&touch, &fades, NT_Z, 0.0) == 0.0);
+    }
+    fades.fade = (nt_fade){.left = 2e-6, .step = 1e-6};
+    fades.engaged = 1.0;
+    assert_true(nt_motor_fade(&touch, &fades) == 0.0 && fades.engaged == 0.0 && fades.fade.left == 0.0);
+}
+
 static void rate_and_amplitude_are_limited(void **state)
 {
     (void)state;
@@ -95,6 +122,7 @@ int main(void)
         cmocka_unit_test(height_is_a_spring),
         cmocka_unit_test(a_fade_is_as_short_as_the_hand_needs),
         cmocka_unit_test(a_force_fades_in_a_line),
+        cmocka_unit_test(a_small_force_fades),
         cmocka_unit_test(rate_and_amplitude_are_limited),
         cmocka_unit_test(power_is_limited_where_the_motor_drives),
     };

@@ -205,7 +205,7 @@ static void a_rise_of_the_scale_is_paid_for(void **state)
     nt_rescale_state s = nt_rescale_start(&r, &scaling);
     assert_true(s.now.alpha_f == 3e6 && s.wanted.alpha_f == 1e6 && s.tank == 0.0);
     nt_rescale_step(&r, &s, 1e-8, 5e-9, 0.0); /* of the threshold: free, and nothing is held */
-    assert_true(s.work == 0.0 && s.region == NT_REGION_APPROACH && s.last_position == 5e-9);
+    assert_true(s.work == 0.0 && s.region == NT_REGION_APPROACH && s.last_position == 5e-9 && s.now.alpha_f == 3e6);
     s.now.alpha_f = 1e6;
     nt_rescale_step(&r, &s, 2e-6, 15e-9, 0.5); /* 2 uN over 10 nm; the tank takes 1e-3 v^2 */
     assert_true(fabs(s.work - 2e-14) < 1e-28 && fabs(s.tank - 2.5e-4) < 1e-18 && s.region == NT_REGION_INDENT);

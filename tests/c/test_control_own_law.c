@@ -122,6 +122,7 @@ static void borders_of_a_law(void **state)
 {
     (void)state;
     nt_rig rig = nt_rig_defaults();
+    rig.master.max_force = 4.0; /* less than the gauge tells */
     nt_settings settings = nt_settings_defaults(&rig), amounts;
     settings.gains.alpha_f_approach = 3.0;
     heard law = {.target = 0.0};
@@ -130,12 +131,15 @@ static void borders_of_a_law(void **state)
     assert_true(amounts.gains.alpha_f == 1e-3 && amounts.gains.force_gain == 0.0);
     assert_true(amounts.gains.alpha_f_approach == 1.0 && amounts.limits.force == settings.limits.force);
     assert_int_equal(amounts.control.choice, NT_CONTROL_DEFAULT);
-    /* pressed with what the gauge tells at most, scaled as the largest region is, and moved by a millionth of 5 N */
-    const double pressed = 3.0 * smaller(settings.gains.alpha_f * settings.limits.force, 5.0);
+    /* pressed with what gauge and motor both reach, scaled as the largest region is, and moved by a millionth of 4 N */
+    const double pressed = 3.0 * smaller(settings.gains.alpha_f * settings.limits.force, 4.0);
     assert_true(fabs(law.most_raw - pressed - 1e-6 * rig.master.max_force) < 1e-12);
     law.slave = 2.0; /* of f_s as it is, not as it is felt */
     assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
     assert_true(fabs(amounts.gains.alpha_f / (6.0 * settings.gains.alpha_f) - 1.0) < 1e-7);
+    settings.gains.coupling_stiffness = 0.5; /* behind any coupling the session's alpha_f counts */
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_E_UNSUPPORTED);
+    settings.gains.coupling_stiffness = 0.0;
     law.target = 1e9; /* [N/m]: by far more than a step of the stage may make */
     assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_E_UNSUPPORTED);
     law.target = 0.0;
@@ -151,6 +155,29 @@ static void borders_of_a_law(void **state)
     assert_true(amounts.gains.velocity_feedforward == 0.8);
 }
 
+/* Three times as steep about a quarter of the largest force, of one sign; or a stage that goes to one side alone. */
+static nt_effort steep(void *context, const nt_gains *gains, const nt_signals *s)
+{
+    const int *lopsided = context;
+    (void)gains;
+    const double f = s->scaling.alpha_f * s->felt_force, more = larger(0.0, smaller(f, 1.5) - 1.0);
+    return (nt_effort){-f - 2.0 * more, *lopsided ? s->target + fabs(s->target) : s->target};
+}
+
+static void the_worst_of_all_points_counts(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig), amounts;
+    int lopsided = 0;
+    settings.control = (nt_control){NT_CONTROL_OWN, steep, &lopsided};
+    assert_true(settings.gains.alpha_f * settings.limits.force > 5.0); /* 1.25 N are a quarter */
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(fabs(amounts.gains.alpha_f / (3.0 * settings.gains.alpha_f) - 1.0) < 1e-7);
+    lopsided = 1;
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_E_UNSUPPORTED);
+}
+
 static nt_effort no_number(void *unused, const nt_gains *gains, const nt_signals *s)
 {
     (void)unused;
@@ -162,15 +189,12 @@ static void what_the_rules_do_not_know_has_no_margin(void **state)
 {
     (void)state;
     const nt_rig rig = nt_rig_defaults();
-    static const mine laws[] = {{.reflection = 3.0, .smooth = 2.0, .memory = 0.1},
-                                {.reflection = 3.0, .smooth = 2.0, .spring = 10.0},
-                                {.reflection = 3.0, .smooth = 2.0, .raw_speed = -10.0},
-                                {.reflection = 3.0, .smooth = 2.0, .follows = 0.1},
-                                {.reflection = 3.0, .smooth = 2.0, .raw = 2.0},
-                                {.reflection = 3.0, .smooth = 2.0, .share = -1.0},
-                                {.reflection = 3.0, .smooth = 2.0, .share = 0.9},
-                                {.reflection = -1.0},
-                                {.reflection = 1.0, .bend = 5.0}};
+    static const mine laws[] = {
+        {.reflection = 3.0, .smooth = 2.0, .memory = 0.1},      {.reflection = 3.0, .smooth = 2.0, .spring = 10.0},
+        {.reflection = 3.0, .smooth = 2.0, .raw_speed = -10.0}, {.reflection = 3.0, .smooth = 2.0, .follows = 0.1},
+        {.reflection = 3.0, .smooth = 2.0, .raw = 2.0},         {.reflection = 3.0, .smooth = 2.0, .share = -1.0},
+        {.reflection = 3.0, .smooth = 2.0, .share = 0.9},       {.reflection = -1.0},
+        {.reflection = 3.0, .smooth = 2.0, .raw = -0.5},        {.reflection = 1.0, .bend = 5.0}};
     for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
         mine law = laws[i];
         const nt_settings settings = with(&rig, &law);
@@ -233,6 +257,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(borders_of_a_law),
+        cmocka_unit_test(the_worst_of_all_points_counts),
         cmocka_unit_test(a_law_is_judged_by_its_own_gains),
         cmocka_unit_test(the_default_law_amounts_to_itself),
         cmocka_unit_test(a_bent_law_is_judged_where_it_is_steepest),

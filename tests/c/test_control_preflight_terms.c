@@ -74,6 +74,18 @@ static void how_long_and_how_far(void **state)
     }
 }
 
+static void ticks_are_rounded_up(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    settings.gains.rate = 1000.0;
+    settings.gains.delay = 1.25;
+    assert_int_equal(nt_preflight_make(&rig, &settings).move, 27);
+    settings.gains.rate = 1001.0;
+    assert_int_equal(nt_preflight_make(&rig, &settings).ticks, 51);
+}
+
 static void the_tare_is_the_mean(void **state)
 {
     (void)state;
@@ -153,6 +165,7 @@ static void the_stage_goes_back_by_enough(void **state)
         assert_int_equal(found.verdict, cases[i].passes ? NT_PREFLIGHT_PASSED : NT_PREFLIGHT_STAGE);
         if (cases[i].passes)
             continue;
+        assert_int_equal(found.tick, 2u * made.ticks + 2u * made.move); /* told at once */
         const nt_problem problem = nt_preflight_problem(&made, &found);
         assert_true(fabs(problem.value + cases[i].share * made.distance) < 1e-9 * made.distance);
         assert_true(alike(problem.minimum, -1.5 * made.distance, 1e-12));
@@ -260,7 +273,8 @@ static void bad_samples_are_named(void **state)
         assert_string_equal(problem.field, i < 5 ? cases[i].field : "a sample before arming");
         assert_string_equal(problem.unit, i < 5 ? "no|yes" : "");
         assert_true(i < 5 ? problem.value == 1.0 && problem.minimum == 0.0 && problem.maximum == 0.0
-                          : isnan(problem.value) && isinf(problem.minimum) && isinf(problem.maximum));
+                          : isnan(problem.value) && problem.minimum < 0.0 && isinf(problem.minimum) &&
+                                problem.maximum > 0.0 && isinf(problem.maximum));
     }
     made.rig.master.gauge = 0; /* nobody reads it, and nothing is tared */
     readings of = {.force = NAN, .share = 1.0};
@@ -272,10 +286,15 @@ static void bad_samples_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(how_long_and_how_far),       cmocka_unit_test(the_tare_is_the_mean),
-        cmocka_unit_test(each_limit_from_both_sides), cmocka_unit_test(the_stage_goes_back_by_enough),
-        cmocka_unit_test(the_way_tick_by_tick),       cmocka_unit_test(what_is_looked_at),
-        cmocka_unit_test(a_saturated_reading),        cmocka_unit_test(bad_samples_are_named),
+        cmocka_unit_test(how_long_and_how_far),
+        cmocka_unit_test(ticks_are_rounded_up),
+        cmocka_unit_test(the_tare_is_the_mean),
+        cmocka_unit_test(each_limit_from_both_sides),
+        cmocka_unit_test(the_stage_goes_back_by_enough),
+        cmocka_unit_test(the_way_tick_by_tick),
+        cmocka_unit_test(what_is_looked_at),
+        cmocka_unit_test(a_saturated_reading),
+        cmocka_unit_test(bad_samples_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

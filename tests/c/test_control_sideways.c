@@ -232,6 +232,9 @@ static void what_may_be_asked(void **unused)
     for (int i = 0; i < 2; ++i)
         assert_int_equal(nt_touch_rescale(&state, &unknown[i]), NT_E_NOT_FINITE);
     assert_true(state.rescale.wanted.alpha_f == 4.0);
+    const nt_scaling small = {0.25, 0.5};
+    assert_int_equal(nt_touch_rescale(&state, &small), NT_OK);
+    assert_true(state.rescale.wanted.alpha_f == 0.5 && state.rescale.wanted.alpha_p == 0.25);
     state.offset = 1.0;
     state.signals.master_position = 8.0;
     state.hand_at[NT_X] = state.hand_at[NT_Y] = 3.0;

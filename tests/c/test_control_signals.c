@@ -114,6 +114,12 @@ static void what_a_coupling_feels(void **unused)
     assert_true(nt_mode_run(&touch, &state) == -0.25 * 12.0); /* a quarter of the ramp */
     assert_true(state.signals.felt_force == 3.0 && state.signals.target == 10.0 && state.reference == 10.0);
     assert_true(state.engaged == 0.25 && state.supervisor.reasons == 0u);
+    touch.passivity.damping = 3.0; /* what the observer adds comes on top */
+    state.passivity.damping = 0.5;
+    state.passivity.speed = 2.0;
+    state.engaged = 0.0;
+    assert_true(nt_mode_run(&touch, &state) == -0.25 * 12.0 - 3.0);
+    state.passivity.damping = 0.0;
     touch.settings.gains.coupling_stiffness = 6.0;
     touch.settings.gains.coupling_damping = 0.25; /* 2 N/m over a period */
     state.stretch = 1.0;
