@@ -145,11 +145,54 @@ static void what_is_next_to_nothing(void **state)
     compare("own impedance", "coupled_margin", blind.coupled_margin, same.coupled_margin, 1e-6);
 }
 
+/* A master of one axis feels more of its force along z only where it projects, on a contact. */
+static void what_is_projected(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    const nt_sideways_contact contact = {.stick = 1.0, .grip = 0.25, .slope = 0.5};
+    assert_true(nt_margins_projected(&rig, &settings, 4.0, &contact) == 1.0);
+    settings.gains.projection_y = 0.5;
+    const double k_eff = 4.0 * 8.0 / 12.0, by_z = k_eff * 0.5 + 0.25 * k_eff / 4.0;
+    compare("a", "projection", nt_margins_projected(&rig, &settings, 4.0, &contact), 1.0 + 0.5 * by_z / k_eff, 1e-12);
+    assert_true(nt_margins_projected(&rig, &settings, 0.0, &contact) == 1.0);
+    compare("a soft", "projection", nt_margins_projected(&rig, &settings, 0.1, &contact), 1.0 + 0.5 * (0.5 + 2.5),
+            1e-12);
+}
+
+/* The least of three, each by its name; a master without damping has no exact limit, and a rule alone. */
+static void verdicts_sideways(void **state)
+{
+    (void)state;
+    const char *const names[] = {"R1 sideways", "exact sideways", "all axes"};
+    for (int i = 0; i < 3; ++i) {
+        nt_sideways_margins m = {.loop_stiffness = 2.0, .margin = 5.0, .exact_limit = 10.0, .coupled_margin = 5.0};
+        *(i == 0 ? &m.margin : i == 1 ? &m.exact_limit : &m.coupled_margin) *= 0.5;
+        const nt_verdict found = nt_verdict_sideways(&m);
+        assert_true(found.margin == 2.5);
+        assert_string_equal(found.rule, names[i]);
+    }
+    nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    const nt_sideways_contact contact = {.stick = 1.0, .grip = 0.25, .slope = 0.5};
+    nt_margins along_z;
+    rig.master.damping = 0.25;
+    (void)nt_margins_judge(&rig, &settings, 0.2, NT_MODE_TOUCH, &along_z);
+    nt_sideways_margins found = nt_margins_sideways(&rig, &settings, 0.2, &contact, &along_z);
+    assert_true(found.exact_limit > 0.0 && found.exact_frequency > 0.0);
+    rig.master.damping = 0.0;
+    found = nt_margins_sideways(&rig, &settings, 0.2, &contact, &along_z);
+    assert_true(found.exact_limit == 0.0 && found.margin == 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sideways_margins_are_those_of_the_whole_matrix),
         cmocka_unit_test(what_is_next_to_nothing),
+        cmocka_unit_test(what_is_projected),
+        cmocka_unit_test(verdicts_sideways),
         cmocka_unit_test(margins_are_those_of_the_whole_matrix),
         cmocka_unit_test(calm_is_that_of_the_whole_matrix),
     };
