@@ -47,7 +47,9 @@ int nt_composition_allows(const nt_composition *composition, double margin)
 static void add_uneven(nt_composition *made, const nt_hazard *hazard)
 {
     nt_guarantee *found = &made->guarantee;
-    const double uneven = nt_grip_uneven(nt_terrain_plan(made->terrain), found->force);
+    const double start[] = {made->setup.x, made->setup.y};
+    const double *place = made->setup.rig.stage.axes == 1.0 ? start : NULL;
+    const double uneven = nt_grip_uneven(nt_terrain_plan(made->terrain), found->force, place);
     const double held = hazard->friction + hazard->slope * found->force;
     found->lateral_force = uneven + fmin(fmax(held, found->lateral_force), found->lateral_force + uneven);
 }

@@ -180,18 +180,35 @@ static double uneven_radii(const nt_plan *plan, double load)
     return CLOSE * most;
 }
 
-double nt_grip_uneven(const nt_plan *plan, double load)
+/* Where a tip stands. */
+static double uneven_radius_at(const nt_plan *plan, double load, const double place[2])
+{
+    const nt_height_value at = nt_surface_height(&plan->followed->ratio, place[0], place[1]);
+    const worths worth = worths_of(plan, load);
+    const double R = plan->contact.radius;
+    return hypotenuse(at.zx, at.zy) * R * worth_from(&worth, at.z * R);
+}
+
+static double slope_of(const nt_surface *surface, const double *place)
+{
+    if (!place)
+        return gradient_of(surface);
+    const nt_height_value at = nt_surface_height(surface, place[0], place[1]);
+    return hypotenuse(at.zx, at.zy);
+}
+
+double nt_grip_uneven(const nt_plan *plan, double load, const double *place)
 {
     const nt_properties *of = plan->properties;
     double sum = 0.0;
     if (!nt_plan_follows(plan))
         return 0.0;
     if (plan->followed && plan->followed->ratio.coefficients)
-        sum += uneven_radii(plan, load);
+        sum += place ? uneven_radius_at(plan, load, place) : uneven_radii(plan, load);
     if (of && of->youngs_modulus.coefficients)
-        sum += gradient_of(&of->youngs_modulus) * worth_at_corners(plan, MODULUS, load);
+        sum += slope_of(&of->youngs_modulus, place) * worth_at_corners(plan, MODULUS, load);
     if (of && of->work_of_adhesion.coefficients)
-        sum += gradient_of(&of->work_of_adhesion) * worth_at_corners(plan, WORK, load);
+        sum += slope_of(&of->work_of_adhesion, place) * worth_at_corners(plan, WORK, load);
     return sum;
 }
 
