@@ -8,14 +8,14 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from nanotouch import curves, images, record
-from nanotouch._io import series
+from nanotouch import curves, formats, images
 from nanotouch.errors import MissingExtra, ReadError
 from nanotouch.images.words import lengths
 
 from nanotouch_app import output
 
 _META = (("instrument", ""), ("date", ""), ("spring constant", "N/m"), ("sensitivity", "m/V"), ("setpoint", "N"))
+MCAP = b"\x89MCAP0\r\n"  # how a recording begins
 _LISTED = 20  # curves of a map that are listed one by one
 Answer = tuple[list[str], dict[str, Any]]
 """lines for a reader, and the same as data, SI"""
@@ -34,7 +34,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is none of them."""
-    with output.busy("reading"), series.of([args.file]):
+    with output.busy("reading"):
         lines, facts = _described(args.file)
     args.answer = {"file": str(args.file), **facts}
     print("\n".join(lines))
@@ -48,7 +48,7 @@ def describe(file: Path) -> list[str]:
 
 def _described(file: Path) -> Answer:
     """The answer. Some endings serve both kinds (.ibw, .h5), so what the file is decided by reading it."""
-    if record.is_recording(file):
+    if formats.begins_with(file, MCAP):
         return _describe_recording(file)
     if file.suffix.lower() == ".tnd":
         return _describe_thermal(file)
@@ -56,6 +56,8 @@ def _described(file: Path) -> Answer:
         raise ReadError(f"{file}: a TOML file: nanotouch plan reads a scene, nanotouch rig check a rig")
     problems: list[ReadError | MissingExtra] = []
     for kind in (_describe_curves, _describe_image):
+        if kind is _describe_curves and formats.is_image(file):
+            continue
         try:
             return kind(file)
         except (ReadError, MissingExtra) as error:
@@ -64,12 +66,14 @@ def _described(file: Path) -> Answer:
     if missing:
         raise missing[0]
     reasons = [str(error).removeprefix(f"{file}: ") for error in problems]
-    if reasons[0] == reasons[1]:
+    if len(set(reasons)) == 1:
         raise problems[0]
     raise ReadError(f"{file}: as a force curve: {reasons[0]}; as an image: {reasons[1]}")
 
 
 def _describe_recording(file: Path) -> Answer:
+    from nanotouch import record  # what only recordings need takes as long to load as an image to list
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of damage: it is told as what the recording lacks
         recording = record.read(file)

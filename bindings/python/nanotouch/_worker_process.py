@@ -6,6 +6,7 @@ from __future__ import annotations
 import gc
 import importlib
 import json
+import mimetypes
 import os
 import signal
 import socket
@@ -65,6 +66,7 @@ def serve(control: socket.socket) -> None:
     warnings.simplefilter("ignore")  # nobody would see them
     gc.disable()  # nothing that was inherited is closed behind our back
     os.environ["HDF5_PLUGIN_PRELOAD"] = "::"  # no filters from elsewhere
+    mimetypes.init()  # from /etc, which a confined child may not read; readers of others import it
     confine.prepare()
     control.sendall(b"ready\n")
     while True:

@@ -153,6 +153,27 @@ def refusal(file: Path, head: bytes, kind: Kind) -> str | None:
     return None
 
 
+def begins_with(file: Path, mark: bytes) -> bool:
+    """Whether these are its first bytes."""
+    return _head(file).startswith(mark)
+
+
+def _head(file: Path) -> bytes:
+    """Empty where it cannot be read: who reads it says why."""
+    try:
+        with file.open("rb") as stream:
+            return stream.read(HEAD)
+    except OSError:
+        return b""
+
+
+def is_image(file: Path) -> bool:
+    """Whether a file is known as one of images that is refused as curves, by its first bytes or its ending."""
+    head = _head(file)
+    read = any(known.kind == "images" and known.reader and file.suffix.lower() in known.endings for known in FORMATS)
+    return read and refusal(file, head, "curves") is not None
+
+
 def markdown(kind: Kind) -> str:
     """The table for the documentation."""
     lines = ["| format | endings | read by | tried on, or what to do |", "|---|---|---|---|"]

@@ -114,8 +114,8 @@ class Archive:
         start = 0.0
         left_out: Counter[str] = Counter()
         numbers = self._segments.get(folder, [])
-        for number in numbers:
-            place = f"{folder}segments/{number}/"
+        for n in numbers:
+            place = f"{folder}segments/{n}/"
             facts = Facts(self.file, place, own | self._expanded(place) | self._general)
             style, duration = facts.text(f"{_SETTINGS}style"), facts.number("force-segment-header.duration")
             if style in ROLES:
@@ -128,6 +128,8 @@ class Archive:
             raise ReadError(f"{self.file}: curve {enum} has no segments{styles}")
         told = [f"{counted(n, 'segment')} of style {s!r} left out" for s, n in left_out.items()]
         told += [f"segment {n} is not in the archive" for n in range(max(numbers)) if n not in numbers]
+        if number == 0 and (lost := self._folders[-1][0] + 1 - len(self)):
+            told.append(f"{counted(lost, 'curve')} of {lost + len(self)} not in the archive")
         meta["notes"] = (*meta.get("notes", ()), *told)
         if not meta["notes"]:
             del meta["notes"]

@@ -64,6 +64,8 @@ def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]
     enough = [int(n) for n in np.flatnonzero(_enough(known, way.near))]
     if len(enough) < len(raw):
         notes += (f"{counted(len(raw) - len(enough), 'curve')} of {len(raw)} without data left out",)
+    if len(raw) > 1 and not _is_capture(found):
+        notes += _check_count(found, len(raw))
     meta |= way.meta | ({"notes": notes + way.notes} if notes + way.notes else {})
     line = _line(found, len(raw)) if len(raw) > 1 else 1
     size = header.scan_size(found)
@@ -152,6 +154,22 @@ def _line(found: list[Section], count: int) -> int:
         if line > 1 and count % line == 0:
             return line
     return 1
+
+
+def _check_count(found: list[Section], count: int) -> tuple[str, ...]:
+    """Of the curves of a map, against the picture that has one point for each: more are refused, fewer are told."""
+    line = header.section(found, "Ciao force list").counts("force/line")[0]
+    listed = [one for one in found if one.name == "Ciao image list" and {"samps/line", "number of lines"} <= set(one)]
+    shapes = [(one.counts("Samps/line")[0], one.counts("Number of lines")[0]) for one in listed]
+    places = [samples * lines for samples, lines in shapes if samples == line]
+    if not places or any(samples * lines == count for samples, lines in shapes):
+        return ()
+    if count > max(places):
+        raise ReadError(
+            f"{found[0].file}: its data are {count} curves, but its picture has {max(places)} points: "
+            "'Samps/line' or 'Data length' is wrong"
+        )
+    return (f"{count} curves of a map of {max(places)}: it was stopped",)
 
 
 def _place(number: int, line: int, count: int, size: tuple[float, float] | None) -> dict[str, Any]:

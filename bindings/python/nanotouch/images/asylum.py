@@ -7,6 +7,7 @@ for x and y. What the values are, the note says (``HeightUnit``), or Asylum's na
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 from collections.abc import Mapping
@@ -126,6 +127,9 @@ def _wave(file: Path) -> _Wave:
         (kind,) = struct.unpack_from(f"{order}h", head, 64 + 16)
         shape = struct.unpack_from(f"{order}4i", head, 64 + 68)
         pitch = struct.unpack_from(f"{order}4d", head, 64 + 84)
+        (points,) = struct.unpack_from(f"{order}I", head, 64 + 12)
+        if points != math.prod(n for n in shape if n):
+            raise ReadError(f"{file}: its header states {points} numbers, but {' x '.join(str(n) for n in shape if n)}")
         if kind not in _NUMBERS:
             raise ReadError(f"{file}: numbers of Igor's type {kind}, which is no picture")
         stream.seek(64 + wave_size + formula)

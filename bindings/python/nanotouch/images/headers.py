@@ -5,6 +5,7 @@
 |---|---|---|
 | Igor (.ibw) | (check sum and lengths: before any reader sees it) | size of the scan in the note and pixel size |
 | Nanosurf (.nid) | file shorter or longer than its channels | size, points and lines in the scan's section |
+| Digital Surf (.sur) | file shorter or longer than its pixels | |
 | PicoView (.mi) | file shorter or longer than its channels | |
 
 No format promises the second column, so it does not refuse a file. The others say nothing twice, or their reader
@@ -14,6 +15,7 @@ compares it already (.gwy: array length and pixels).
 from __future__ import annotations
 
 import re
+import struct
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -25,6 +27,7 @@ from .channel import Plane
 from .checks import LENGTHS
 
 Meta = Mapping[str, Any]
+_SURF, _SURF_HEADER = b"DIGITAL SURF", 512
 _TOLERANCE = 2e-3  # of numbers printed with few digits
 _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
 
@@ -59,6 +62,10 @@ def _length(text: str) -> float | None:
 
 def _igor(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     assert plane.pixel_size is not None
+    ny, nx = plane.values.shape
+    lines, stated_nx = (_positive(meta.get(key)) for key in ("ScanLines", "ScanPoints"))
+    if lines and stated_nx and lines * stated_nx == nx * ny and lines != ny:
+        raise ReadError(f"{file}: {nx} x {ny} pixels, but its note states {stated_nx:g} x {lines:g}")
     for axis, key, points in ((1, "FastScanSize", "ScanPoints"), (0, "SlowScanSize", "ScanLines")):
         count, pitch = plane.values.shape[axis], plane.pixel_size[axis]
         stated = _positive(meta.get(key))
@@ -101,6 +108,21 @@ def _nanosurf(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
         _check_held(file, len(data), sum(sizes), nx)
 
 
+def _digital_surf(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
+    """A header of 512 bytes, a comment, then integers of 16 or 32 bits."""
+    head = file.read_bytes()[:_SURF_HEADER]
+    if not head.startswith(_SURF):
+        return  # packed
+    (bits,), (comment,), (private,) = (struct.unpack_from("<h", head, at) for at in (98, 334, 336))
+    (spacing,) = struct.unpack_from("<f", head, 128)
+    if spacing < 0.0:
+        raise ReadError(f"{file}: its header states a spacing of heights of {spacing:g}, expected a positive number")
+    nx, width = plane.values.shape[1], bits // 8
+    held = file.stat().st_size - _SURF_HEADER - comment - private
+    _check_held(file, held, plane.values.size * width, nx * width)
+    yield from ()
+
+
 def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     content = file.read_bytes()
     end = re.search(rb"\ndata\s+(BINARY(?:_32)?)\s*?\n", content)
@@ -114,5 +136,5 @@ def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
 
 
 _CHECKS: dict[str, Callable[[Path, Meta, Plane], Iterator[str]]] = {
-    "ibw": _igor, "ezd": _nanosurf, "mi": _picoview,
+    "ibw": _igor, "ezd": _nanosurf, "mi": _picoview, "sur": _digital_surf,
 }  # fmt: skip

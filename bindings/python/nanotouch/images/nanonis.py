@@ -64,6 +64,8 @@ def read(file: Path, channel: str | None) -> Plane:
     cut = f"{held} bytes long, but its header states {needed}: it is cut off"
     if held < scan.start + 4 * count * (number + 1):
         raise ReadError(f"{file}: {cut}")
+    if held >= needed + 4 * scan.shape[1]:
+        raise ReadError(f"{file}: {held} bytes long, but its header states {needed}: its pixels or channels are wrong")
     raw = np.fromfile(file, scan.order, count, offset=scan.start + 4 * count * number)
     lines, notes = _measured(raw.astype(np.float64).reshape(scan.shape))
     values = lines[:: 1 if scan.up else -1, :: -1 if backward else 1]
