@@ -13,14 +13,25 @@ from nanotouch.errors import InvalidValue
 Floats = NDArray[np.float64]
 
 
-def as_floats(values: ArrayLike, name: str) -> Floats:
-    """A float64 array of real numbers, of the same shape."""
+def refuse_dressed(values: Any, name: str) -> None:
+    """Refuse what numpy would strip in silence: a mask, a unit."""
     if isinstance(values, np.ma.MaskedArray):
         raise TypeError(f"{name} is a masked array; fill or compress it first")
     if isinstance(values, np.matrix):
         raise TypeError(f"{name} is a numpy.matrix; pass numpy.asarray of it")
     if hasattr(values, "units") or hasattr(values, "unit"):
         raise TypeError(f"{name} carries a unit; convert it to SI and pass plain numbers")
+
+
+def as_mask(values: ArrayLike, name: str) -> NDArray[np.bool_]:
+    """An array of booleans."""
+    refuse_dressed(values, name)
+    return np.asarray(values, dtype=bool)
+
+
+def as_floats(values: ArrayLike, name: str) -> Floats:
+    """A float64 array of real numbers, of the same shape."""
+    refuse_dressed(values, name)
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must be real numbers, not {array.dtype}")

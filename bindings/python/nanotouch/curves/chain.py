@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from .._arrays import as_floats
 from ..errors import InvalidValue
 from .baseline import Floats
 from .curve import ForceCurve
@@ -63,7 +64,7 @@ class Chain:
 
 def worm_like(part: Floats) -> Floats:
     """F p/(k_B T) of a worm-like chain stretched to this part of its contour (Bouchiat et al. 1999), to 0.4 %."""
-    u = np.asarray(part, np.float64)
+    u = as_floats(part, "part")
     more = np.zeros_like(u)
     for coefficient in reversed(_BOUCHIAT):
         more = more * u + coefficient
@@ -72,7 +73,7 @@ def worm_like(part: Floats) -> Floats:
 
 def freely_jointed(force: Floats) -> Floats:
     """Part of its contour to which F b/(k_B T) stretches a freely jointed chain: Langevin's function."""
-    f = np.asarray(force, np.float64)
+    f = as_floats(force, "force")
     small = np.abs(f) < 1e-3
     safe = np.where(small, 1.0, f)
     return np.where(small, f / 3.0, 1.0 / np.tanh(safe) - 1.0 / safe)

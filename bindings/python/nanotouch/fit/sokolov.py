@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nanotouch._arrays import Floats, check_between
+from nanotouch._arrays import Floats, as_floats, check_between
 
 from .models import Model, Parameter
 
@@ -56,7 +56,7 @@ class SeriesBias(NamedTuple):
 
 def force_of(indentation: Any, radius: float, effective_modulus: float, thickness: float, pressure: float) -> Floats:
     """Force [N] at indentations [m] from the bare cell; `pressure` is kT/s^3 [Pa]. 0 beyond the brush."""
-    delta = np.asarray(indentation, dtype=np.float64) / thickness
+    delta = as_floats(indentation, "indentation") / thickness
     scale = 2.0 * math.pi * radius * pressure * thickness * 4.0 / 35.0
     give = np.cbrt(9.0 * scale**2 / (16.0 * effective_modulus**2 * radius)) / thickness  # of the cell under it, over T
     u = np.interp(delta, give * _TWO_THIRDS - _LEFT, _TABLE)  # ln(T/h)/4

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._arrays import Floats
+from .._arrays import Floats, as_mask
 from ..errors import InvalidValue
 from .topography import Topography
 
@@ -63,7 +63,7 @@ def used_pixels(topography: Topography, mask: NDArray[np.bool_] | None, least: i
     else:
         if np.shape(mask) != topography.shape:
             raise InvalidValue(f"mask: shape {np.shape(mask)}, expected {topography.shape}")
-        used = ~(topography.mask | np.asarray(mask, dtype=bool))
+        used = ~(topography.mask | as_mask(mask, "mask"))
     if used is not None and np.count_nonzero(used) < least:
         raise InvalidValue(f"mask: leaves {np.count_nonzero(used)} pixels, expected at least {least}")
     return used

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import guard
+from .._arrays import as_floats
 from .._io import worker
 from .._io.files import checked_path, guarded, refuse_traps
 from .._io.readers import head_of, registered_for
@@ -157,7 +158,7 @@ def checked_pixel_size(pixel_size: float | tuple[float, float] | None) -> tuple[
     """(dy, dx) [m] in its range."""
     if pixel_size is None:
         return None
-    pair = np.atleast_1d(np.asarray(pixel_size, dtype=np.float64))
+    pair = np.atleast_1d(as_floats(pixel_size, "pixel_size"))
     if pair.shape not in ((1,), (2,)) or not ((pair >= 1e-12) & (pair <= 1e-3)).all():
         raise InvalidValue(f"pixel_size: {pixel_size!r} m, expected one or two lengths of 1e-12 .. 1e-3 m")
     return float(pair[0]), float(pair[-1])

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._arrays import Floats, check_between
+from .._arrays import Floats, as_floats, check_between
 from ..errors import InvalidValue
 from .topography import Topography
 
@@ -151,7 +151,7 @@ def rounded_cone(r: Floats, radius: float, half_angle: float) -> Floats:
 
 
 def _checked(tip: Floats) -> Floats:
-    heights = np.asarray(tip, dtype=np.float64)
+    heights = as_floats(tip, "tip")
     if heights.ndim != 2 or not all(n % 2 for n in heights.shape):
         raise InvalidValue(f"tip: shape {heights.shape}, expected two dimensions, both odd")
     if heights[heights.shape[0] // 2, heights.shape[1] // 2] != 0 or not (heights >= 0).all():

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from .._arrays import refuse_dressed
 from ..errors import InvalidValue
 from .words import length, lengths
 
@@ -94,6 +95,7 @@ def _frozen(array: object, dtype: type[np.generic]) -> NDArray[np.generic]:
     """A read-only C-ordered view (or copy, where the layout or type differs); the caller's own array stays writable."""
     if isinstance(array, np.ma.MaskedArray):
         raise InvalidValue("masked arrays are not accepted: fill them and pass `mask`")
+    refuse_dressed(array, "the image")
     view = np.ascontiguousarray(array, dtype=dtype).view()
     view.flags.writeable = False
     return view

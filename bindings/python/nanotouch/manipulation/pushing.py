@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nanotouch._arrays import Floats, check_between
+from nanotouch._arrays import Floats, as_floats, check_between
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.units import in_words
 
@@ -247,7 +247,7 @@ def push(
     laid = Particles(particle, lever=needed(lever, particle, min(tolerance, longest)))
     world = world_of(World, laid, bench or Bench(), [start], seed)
     mark = np.array([start[0], start[1] - 10.0 * particle.radius])
-    operator = Operator(world, mark, np.array(target), longest)
+    operator = Operator(world, mark, as_floats(target, "target"), longest)
     return operator.work(seen or start, tolerance, most, progress)
 
 
@@ -281,7 +281,7 @@ class Operator:
         world = self.world
         begun = world.lines, world.time, len(world.rows)
         drift = self.drift_of(self.drift)
-        found = self._find(np.array(seen) + drift)
+        found = self._find(as_floats(seen, "seen") + drift)
         looks, pushes = [found - drift], 0
         while float(np.linalg.norm(self.target - looks[-1])) > tolerance and pushes < most:
             self._push(found, drift)
@@ -356,7 +356,7 @@ def arrange(
     if not 1 <= len(starts) <= 6 or len(starts) != len(targets):
         raise InvalidValue(f"{len(starts)} starts, {len(targets)} targets: valid are as many, 1 .. 6")
     check_between("tolerance", tolerance, "m", above=0.0)
-    plan = _clear_plan(np.array(starts, float), np.array(targets, float), 4.0 * particle.radius)
+    plan = _clear_plan(as_floats(starts, "starts"), as_floats(targets, "targets"), 4.0 * particle.radius)
     laid = Particles(particle, lever=needed(lever, particle, min(tolerance, 0.5 * particle.radius)))
     world = world_of(World, laid, bench or Bench(), starts, seed)
     low, left = min(y for _, y in starts), min(x for x, _ in starts)

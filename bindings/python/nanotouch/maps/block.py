@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from .._arrays import Floats
 from ..fit.models import extension, find
 from ..fit.uncertainties import Uncertainties
 from .settings import Settings
 from .store import Columns
-from .volume import Block, Floats
+from .volume import Block
 
 #: besides the parameters: name -> (unit, what it is); those of MEASURED have a sigma too
 MEASURED = {

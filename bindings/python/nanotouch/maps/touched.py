@@ -9,7 +9,7 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from .._arrays import Floats
+from .._arrays import Floats, as_floats
 from ..errors import InvalidValue
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
 from ..fit.models import is_sharp
@@ -154,7 +154,7 @@ def _filled(values: Floats, missing: NDArray[np.bool_], by: Fill | None, name: s
 def pixel_size_of(data: Any, given: float | tuple[float, float] | None = None) -> tuple[float, float]:
     """(dy, dx) [m] of a map, by where its curves were taken."""
     if given is not None:
-        pair = np.broadcast_to(np.asarray(given, dtype=np.float64), (2,))
+        pair = np.broadcast_to(as_floats(given, "pixel_size"), (2,))
         return float(pair[0]), float(pair[1])
     sides = []
     for axis in "yx":

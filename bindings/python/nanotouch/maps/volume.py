@@ -13,12 +13,12 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from .._arrays import Floats, as_floats, refuse_dressed
 from .._io.digest import file_digest
 from .._io.words import printable
 from ..curves import ForceCurve, Segment, Stream, read, stream
 from ..errors import InvalidValue
 
-Floats = NDArray[np.float64]
 _HASHED = 1 << 24  # byte at a time
 
 
@@ -79,6 +79,9 @@ class ArrayVolume:
     tip_radii: frozenset[float] = frozenset()
 
     def __post_init__(self) -> None:
+        for values, name in ((self.values, "the map"), (self.z, "z")):
+            if isinstance(values, np.ma.MaskedArray):  # others as they are sliced
+                refuse_dressed(values, name)
         if len(self.values.shape) != 3:
             raise InvalidValue(f"the array of a map has shape (y, x, points), not {self.values.shape}")
         valid = (self.values.shape[2:], self.values.shape)
@@ -99,7 +102,7 @@ class ArrayVolume:
         if self.deflection:
             force = force * self.spring_constant
         shared = len(self.z.shape) == 1
-        z = np.ascontiguousarray(self.z, np.float64) if shared else self._rows(self.z, start, stop)
+        z = as_floats(self.z, "z") if shared else self._rows(self.z, start, stop)
         turns = np.full(count, _turn(z)) if shared else np.array([_turn(one) for one in z.reshape(count, points)])
         first = points * np.arange(count)
         edges = np.append(np.stack([first, first + turns], axis=1).ravel(), points * count)
@@ -109,7 +112,9 @@ class ArrayVolume:
         """The curves start .. stop - 1 of an array that can be sliced by rows."""
         nx = self.shape[1]
         top = start // nx
-        rows = np.asarray(values[top : -(-stop // nx)], np.float64).reshape(-1, values.shape[2])
+        found = values[top : -(-stop // nx)]
+        found = found.compute() if hasattr(found, "compute") else found  # of Dask, whose chunks may be masked
+        rows = as_floats(found, "the map").reshape(-1, values.shape[2])
         return np.ascontiguousarray(rows[start - top * nx : stop - top * nx])
 
     def digest(self) -> str:
@@ -264,7 +269,7 @@ def volume_of(source: Any, z: Any, deflection: bool, reading: Mapping[str, Any])
     spring_constant = reading["spring_constant"]
     if z is None or spring_constant is None:
         raise InvalidValue("a map from an array needs z [m] and spring_constant [N/m]")
-    return ArrayVolume(source, z if hasattr(z, "shape") else np.asarray(z), spring_constant, deflection)
+    return ArrayVolume(source, z if hasattr(z, "shape") else as_floats(z, "z"), spring_constant, deflection)
 
 
 def blocks_of(volume: Volume, size: int) -> Iterator[tuple[int, int, int]]:

@@ -272,7 +272,7 @@ class Reach(NamedTuple):
     @classmethod
     def along(cls, terrain: _core.Terrain, path: Sequence[tuple[float, float]]) -> Reach:
         """Straight from point to point (x, y) [m], the start first."""
-        return cls(*terrain.reach_path(np.asarray(path, dtype=float)))
+        return cls(*terrain.reach_path(as_floats(path, "path")))
 
     @classmethod
     def within(
