@@ -12,6 +12,9 @@
 #include "curves/robust.h"
 
 static const double largest_value = 1.0; /* m or N: beyond, the unit is surely not SI */
+static const double faint = 2.0;         /* times the visible force, below which a dip is hardly told from noise */
+static const double unseen = 0.95;       /* of a step between samples: a tear lies anywhere in it */
+static const double two_sided = 1.959963984540054; /* standard deviations of an interval of 95 % */
 
 long nt_curve_work_size(long points)
 {
@@ -163,6 +166,21 @@ static nt_status read_both(const nt_curve *curve, const manner *how, double **fr
     return status;
 }
 
+/* A short hold tears between two samples: its force grows with the lever's stiffness until then, and its last reading
+ * may hardly stand out of the noise. The upper end of a faint pull-off holds what the force grows by after the lowest
+ * reading. */
+static void hold_last_reading(double spring_constant, nt_curve_reading *reading)
+{
+    const nt_curve_branch *retract = &reading->retract;
+    const long lowest = retract->lowest;
+    const int is_faint = retract->dip.value < faint * retract->visible;
+    if (!is_faint || lowest + 1 >= retract->count || isnan(spring_constant))
+        return;
+    const double step = retract->z[lowest + 1] - retract->z[lowest];
+    const double end = -retract->force[lowest] + unseen * spring_constant * step;
+    reading->pull_off_most = fmax(reading->pull_off_most, end - two_sided * reading->pull_off_sigma);
+}
+
 nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, double *work, nt_curve_reading *reading,
                         nt_problem *problem)
 {
@@ -172,8 +190,10 @@ nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, do
     const nt_status status = read_both(curve, &how, &free, reading);
     if (status != NT_OK)
         return status;
-    if (reading->retract.count)
+    if (reading->retract.count) {
         nt_curve_doubt_ringing(reading);
+        hold_last_reading(curve->spring_constant, reading);
+    }
     const nt_curve_branch *first = reading->approach.count ? &reading->approach : &reading->retract;
     if (first->count) {
         nt_curve_find_contact(first, curve->spring_constant, free, reading);
