@@ -42,8 +42,8 @@ def test_ringing_is_not_seen_where_there_is_none() -> None:
 
 @pytest.mark.parametrize("ringing", [(0.0, 0.0), (5e-12, 150e-12)])
 def test_a_hold_of_few_samples_is_in_its_interval(ringing: tuple[float, float]) -> None:
-    """Of 30 to 150 pN, near the noise or torn between two samples. 60 curves of 96 % hold 52 (87 %) or more, but for one
-    draw in a thousand; 82 % of them were held."""
+    """Of 30 to 150 pN, near the noise or torn between two samples. Of 96 %, 60 curves hold 52 (87 %) or more, but for
+    one draw in a thousand; 82 % of them were held."""
     found, _ = _found(42, (30e-12, 150e-12), ringing)
     held = (found[:, 1] <= found[:, 0]) & (found[:, 0] <= found[:, 2])
     assert held.mean() >= 0.87

@@ -108,7 +108,7 @@ def test_fewer_pixels_than_there_are_data_are_refused(tmp_path: Path, kind: str,
     changed = re.sub(old, new, path.read_bytes())
     assert changed != path.read_bytes()
     path.write_bytes(changed)
-    with pytest.raises(ReadError, match="bytes of data, but its header states .*: its points, lines or bits are wrong"):
+    with pytest.raises(ReadError, match="its points, lines or bits are wrong"):
         images.read(path)
 
 
