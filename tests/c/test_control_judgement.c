@@ -88,6 +88,35 @@ static void ages_at_their_borders(void **unused)
     assert_int_equal(at_once(&s, &sample), 0u);
 }
 
+/* A sample of just two periods still tells where the stage is, and that nothing presses. */
+static void what_an_old_sample_tells(void **unused)
+{
+    (void)unused;
+    const nt_supervisor s = plain();
+    for (int late = 0; late < 2; ++late) {
+        nt_supervisor_state state = nt_supervisor_start();
+        nt_sample sample = good();
+        sample.age = late ? nextafter(0.125, 1.0) : 0.125;
+        sample.stage_position[NT_Z] = 10.0; /* far from where it was told to be */
+        uint32_t found = 0u;
+        for (int k = 0; k < 3; ++k)
+            found |= reasons(&s, &state, &sample);
+        assert_int_equal(found & NT_REASON_FOLLOW, late ? 0u : NT_REASON_FOLLOW);
+        state = nt_supervisor_start();
+        state.state = NT_RETRACT;
+        sample.stage_position[NT_Z] = 0.0;
+        reasons(&s, &state, &sample);
+        assert_int_equal(state.presses, late);
+        sample.age = 0.0;
+        sample.deflection[NT_Z] = 1.0;
+        reasons(&s, &state, &sample);
+        assert_int_equal(state.presses, 0);
+        sample.deflection[NT_Z] = nextafter(1.0, 2.0);
+        reasons(&s, &state, &sample);
+        assert_int_equal(state.presses, 1);
+    }
+}
+
 /* A reading at the end of what its sensor gives is one, anything beyond is not. */
 static void readings_at_the_end_of_their_ranges(void **unused)
 {
@@ -340,10 +369,15 @@ static void where_it_should_be_in_a_stop(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ages_at_their_borders),     cmocka_unit_test(readings_at_the_end_of_their_ranges),
-        cmocka_unit_test(forces_at_their_limits),    cmocka_unit_test(indentation_is_travel_since_first_touch),
-        cmocka_unit_test(late_ticks_are_counted),    cmocka_unit_test(the_power_of_a_drive),
-        cmocka_unit_test(where_the_stage_should_be), cmocka_unit_test(where_it_should_be_in_a_stop),
+        cmocka_unit_test(ages_at_their_borders),
+        cmocka_unit_test(readings_at_the_end_of_their_ranges),
+        cmocka_unit_test(what_an_old_sample_tells),
+        cmocka_unit_test(forces_at_their_limits),
+        cmocka_unit_test(indentation_is_travel_since_first_touch),
+        cmocka_unit_test(late_ticks_are_counted),
+        cmocka_unit_test(the_power_of_a_drive),
+        cmocka_unit_test(where_the_stage_should_be),
+        cmocka_unit_test(where_it_should_be_in_a_stop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -155,6 +155,27 @@ static void how_far_a_stop_lifts(void **unused)
     }
 }
 
+/* A sensor that seems stuck is tried: the probe steps away by twenty steps of the read-out, no more. */
+static void a_stuck_sensor_is_stepped_away_from(void **unused)
+{
+    (void)unused;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    nt_touch touch;
+    assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL), NT_OK);
+    nt_touch_state state = nt_touch_start(&touch, 0.0, 0.0, 0.0);
+    state.supervisor.deflection =
+        (nt_stuck){.run = NT_STUCK_SAMPLES, .noise_samples = 200u, .band = 1e-12, .position = {0.0, 0.0, 50e-9}};
+    for (int k = 0; k < 40; ++k) {
+        const nt_sample sample = {.stage_position = {0.0, 0.0, state.reference}};
+        nt_command command;
+        nt_touch_step(&touch, &state, &sample, &command);
+        assert_int_equal(command.state, NT_HOLD);
+    }
+    assert_true(fabs(state.retracted - 20.0 * rig.stage.resolution) < 1e-20);
+    assert_true(fabs(state.reference + 20.0 * rig.stage.resolution) < 1e-20);
+}
+
 /* A reading whose noise is an alternation of +-1/2 about `middle`. */
 static double reading(int k, double middle)
 {
@@ -243,6 +264,7 @@ int main(void)
         cmocka_unit_test(a_stage_that_falls_on),
         cmocka_unit_test(how_far_a_stop_lifts),
         cmocka_unit_test(the_noise_that_is_learnt),
+        cmocka_unit_test(a_stuck_sensor_is_stepped_away_from),
         cmocka_unit_test(the_first_block),
         cmocka_unit_test(a_dead_sensor_by_number),
     };

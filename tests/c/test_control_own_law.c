@@ -158,10 +158,11 @@ static void borders_of_a_law(void **state)
 /* Three times as steep about a quarter of the largest force, of one sign; or a stage that goes to one side alone. */
 static nt_effort steep(void *context, const nt_gains *gains, const nt_signals *s)
 {
-    const int *lopsided = context;
+    const int kind = *(const int *)context;
     (void)gains;
     const double f = s->scaling.alpha_f * s->felt_force, more = larger(0.0, smaller(f, 1.5) - 1.0);
-    return (nt_effort){-f - 2.0 * more, *lopsided ? s->target + fabs(s->target) : s->target};
+    const double pulled = kind == 2 ? smaller(0.0, f + 4.0) : 0.0; /* or where it pulls the most */
+    return (nt_effort){-f - 2.0 * (kind == 2 ? pulled : more), kind == 1 ? s->target + fabs(s->target) : s->target};
 }
 
 static void the_worst_of_all_points_counts(void **state)
@@ -169,12 +170,15 @@ static void the_worst_of_all_points_counts(void **state)
     (void)state;
     const nt_rig rig = nt_rig_defaults();
     nt_settings settings = nt_settings_defaults(&rig), amounts;
-    int lopsided = 0;
-    settings.control = (nt_control){NT_CONTROL_OWN, steep, &lopsided};
+    int kind = 0;
+    settings.control = (nt_control){NT_CONTROL_OWN, steep, &kind};
     assert_true(settings.gains.alpha_f * settings.limits.force > 5.0); /* 1.25 N are a quarter */
     assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
     assert_true(fabs(amounts.gains.alpha_f / (3.0 * settings.gains.alpha_f) - 1.0) < 1e-7);
-    lopsided = 1;
+    kind = 2;
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(fabs(amounts.gains.alpha_f / (3.0 * settings.gains.alpha_f) - 1.0) < 1e-7);
+    kind = 1;
     assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_E_UNSUPPORTED);
 }
 

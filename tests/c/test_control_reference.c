@@ -56,6 +56,23 @@ static void margins_are_those_of_the_whole_matrix(void **state)
     }
 }
 
+/* The stage's own limit asks no master: without damping it is the same, and the others are none. */
+static void a_master_without_damping(void **state)
+{
+    (void)state;
+    for (int i = 0; i < CASES; ++i) {
+        const loop_case *row = &loop_cases[i];
+        nt_rig rig = nt_rig_defaults();
+        nt_settings settings = nt_settings_defaults(&rig);
+        set_loop(row->in, &rig, &settings);
+        rig.master.damping = rig.hand.damping = 0.0;
+        const nt_margins found = nt_margins_compute(&rig, &settings.gains, row->in[STIFFNESS]);
+        assert_true(found.exact_limit == 0.0 && found.force_gain_limit == 0.0 && isnan(found.exact_frequency));
+        if (settings.control.choice != NT_CONTROL_PAPER)
+            COMPARE(row, found, integral_limit, 1e-6);
+    }
+}
+
 static void calm_is_that_of_the_whole_matrix(void **state)
 {
     (void)state;
@@ -194,6 +211,7 @@ int main(void)
         cmocka_unit_test(what_is_projected),
         cmocka_unit_test(verdicts_sideways),
         cmocka_unit_test(margins_are_those_of_the_whole_matrix),
+        cmocka_unit_test(a_master_without_damping),
         cmocka_unit_test(calm_is_that_of_the_whole_matrix),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
