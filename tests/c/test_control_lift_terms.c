@@ -255,6 +255,30 @@ static void a_dead_sensor_by_number(void **unused)
     }
 }
 
+/* Armed again it begins anew; what it has learnt of its sensors and of the way stays. */
+static void armed_again(void **unused)
+{
+    (void)unused;
+    nt_supervisor_state state = nt_supervisor_start();
+    state.state = NT_LATCHED;
+    state.reasons = NT_REASON_STUCK;
+    state.deflection = (nt_stuck){.run = 9u, .band = 2.0, .position = {1.0, 2.0, 3.0}};
+    state.amplitude = (nt_stuck){.run = 9u, .band = 3.0};
+    state.surface = 4.0;
+    state.indentation = 5.0;
+    state.late_ticks = 6u;
+    state.expected = 7.0;
+    state.off_run = state.invalid_run = state.late_run = 8u;
+    assert_int_equal(nt_supervisor_arm(&state, 0), NT_E_STATE);
+    assert_int_equal(nt_supervisor_arm(&state, 1), NT_OK);
+    assert_true(state.state == NT_RUN && state.reasons == 0u && state.deflection.run == 0u &&
+                state.amplitude.run == 0u);
+    assert_true(state.deflection.band == 2.0 && state.amplitude.band == 3.0 && state.deflection.position[NT_Z] == 0.0);
+    assert_true(state.deflection.position[NT_X] == 1.0 && state.surface == 4.0 && state.indentation == 5.0);
+    assert_true(state.late_ticks == 6u && state.expected == 7.0);
+    assert_true(state.off_run == 0u && state.invalid_run == 0u && state.late_run == 0u);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -265,6 +289,7 @@ int main(void)
         cmocka_unit_test(how_far_a_stop_lifts),
         cmocka_unit_test(the_noise_that_is_learnt),
         cmocka_unit_test(a_stuck_sensor_is_stepped_away_from),
+        cmocka_unit_test(armed_again),
         cmocka_unit_test(the_first_block),
         cmocka_unit_test(a_dead_sensor_by_number),
     };

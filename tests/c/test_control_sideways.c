@@ -299,6 +299,34 @@ static void places_of_the_stage(void **unused)
     }
 }
 
+/* What was sent is remembered by its tick; an observer that has nothing left to take holds a touch, and no other mode.
+ */
+static void what_a_period_leaves(void **unused)
+{
+    (void)unused;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    const nt_mode modes[] = {NT_MODE_TOUCH, NT_MODE_TOPOGRAPHY};
+    for (int i = 0; i < 2; ++i) {
+        nt_touch touch;
+        assert_int_equal(nt_touch_make(&touch, &rig, &settings, modes[i], NULL), NT_OK);
+        nt_touch_state state = nt_touch_start(&touch, 0.0, 0.0, 0.0);
+        state.ticks = NT_TOUCH_SENT + 3u;
+        state.command.motor_force[NT_X] = 1.0;
+        state.command.motor_force[NT_Y] = 2.0;
+        state.passivity.gain = 0.01;
+        state.passivity.damping = 1.0;
+        const nt_sample sample = {.flags = 0u};
+        nt_command command;
+        nt_touch_step(&touch, &state, &sample, &command);
+        assert_true(state.sent[3][NT_X] == 1.0 && state.sent[3][NT_Y] == 2.0);
+        assert_true(state.sent[3][NT_Z] == command.motor_force[NT_Z]);
+        assert_int_equal(command.reasons & NT_REASON_UNSTABLE, i ? 0u : NT_REASON_UNSTABLE);
+        assert_int_equal(command.reasons & NT_REASON_BACKED_OFF, NT_REASON_BACKED_OFF);
+        assert_true(state.since == (i ? 0u : NT_TOUCH_SENT + 3u) && state.ticks == NT_TOUCH_SENT + 4u);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -309,6 +337,7 @@ int main(void)
         cmocka_unit_test(energy_sideways),
         cmocka_unit_test(what_may_be_asked),
         cmocka_unit_test(places_of_the_stage),
+        cmocka_unit_test(what_a_period_leaves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,6 +61,16 @@ class Build:
             target = self.folder / package / Path(name).relative_to(source)
             target.write_text(python_source.with_switches((self.root / name).read_text(), mutants))
 
+        self._check_import()
+
+    def _check_import(self) -> None:
+        """An editable install goes before any path: its finder would hide the copy."""
+        environment = dict(os.environ, PYTHONPATH=str(self.folder), NT_MUTANT="0")
+        command = [sys.executable, "-c", "import importlib.util; print(importlib.util.find_spec('nanotouch').origin)"]
+        found = subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.strip()
+        if not Path(found).is_relative_to(self.folder):
+            sys.exit(f"tests would import {found}: mutants of Python need a package that is not installed as editable")
+
     def tests(self) -> list[str]:
         """Return the test files."""
         names = sorted(path.name for path in (self.root / "tests/python").glob("test_*.py"))
