@@ -299,6 +299,32 @@ static void places_of_the_stage(void **unused)
     }
 }
 
+static nt_effort every_other(void *context, const nt_gains *gains, const nt_signals *signals)
+{
+    int *calls = context;
+    (void)gains;
+    return (nt_effort){++*calls % 2 ? (double)NAN : 0.0, signals->target};
+}
+
+/* A law that gives no number holds; only twice in a row does it retract. */
+static void a_law_without_a_number_now_and_then(void **unused)
+{
+    (void)unused;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    int calls = 0;
+    settings.control = (nt_control){NT_CONTROL_OWN, every_other, &calls};
+    nt_touch touch;
+    assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL), NT_OK);
+    nt_touch_state state = nt_touch_start(&touch, 0.0, 0.0, 0.0);
+    for (int k = 0; k < 8; ++k) {
+        const nt_sample sample = {.flags = 0u};
+        nt_command command;
+        nt_touch_step(&touch, &state, &sample, &command);
+        assert_int_equal(command.state, k % 2 ? NT_RUN : NT_HOLD);
+    }
+}
+
 /* What was sent is remembered by its tick; an observer that has nothing left to take holds a touch, and no other mode.
  */
 static void what_a_period_leaves(void **unused)
@@ -338,6 +364,7 @@ int main(void)
         cmocka_unit_test(what_may_be_asked),
         cmocka_unit_test(places_of_the_stage),
         cmocka_unit_test(what_a_period_leaves),
+        cmocka_unit_test(a_law_without_a_number_now_and_then),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
