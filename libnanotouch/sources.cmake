@@ -70,11 +70,13 @@ set(nanotouch_sources_plasticity plasticity/dents.c plasticity/imprint.c plastic
 set(nanotouch_sources_rheology
     rheology/arms.c
     rheology/grow.c
+    rheology/loop.c
     rheology/power_law.c
     rheology/profile.c
     rheology/prony.c
     rheology/rheology.c
     rheology/shrink.c
+    rheology/springs.c
     rheology/standard_linear_solid.c
     rheology/viscoelastic.c)
 set(nanotouch_sources_surface

@@ -52,7 +52,7 @@ HEADERS = {
     **dict.fromkeys(["balance", "flow", "steady", "tapping"], "scan"),
     **dict.fromkeys(["particle", "particles", "pushed", "rod"], "manipulation"),
     "dents": "plasticity",
-    "viscoelastic": "rheology",
+    **dict.fromkeys(["viscoelastic", "viscoelastic_loop"], "rheology"),
     "terrain": "session",
     "sim": "hal/sim",
     "faults": "hal/sim",

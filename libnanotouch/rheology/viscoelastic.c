@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "rheology/run.h"
+#include "rheology/springs.h"
 
 #define RATIO 1.6               /* of the base over first touch, from step to step, at most */
 enum { FIRST = 14, MORE = 64 }; /* steps between first touch and the next point; records beyond the points' own */
@@ -60,10 +61,10 @@ static int parameters(const nt_viscoelastic *contact, int with_derivatives)
 
 long nt_viscoelastic_workspace(const nt_viscoelastic *contact, long count, int with_derivatives)
 {
-    return (count + MORE) * (NT_RUN_BY + parameters(contact, with_derivatives));
+    const int count_by = parameters(contact, with_derivatives);
+    const long records = (count + MORE) * (NT_RUN_BY + count_by), springs = nt_springs_workspace(count_by);
+    return records > springs ? records : springs;
 }
-
-#define AGAIN "a contact that has shrunk grows again, which this law does not follow"
 
 static nt_status wrong(nt_problem *problem, nt_status status, nt_problem found)
 {
@@ -192,6 +193,31 @@ static void put(const nt_run *run, const nt_viscoelastic_result *result, long i)
         result->derivatives[i * run->arms.parameters + p] = run->force_by[p];
 }
 
+/* Out of contact, at the first point. */
+static void begin(nt_run *run, const nt_viscoelastic_path *path)
+{
+    run->phase = NT_RUN_OUT;
+    run->time = path->times[0];
+    run->base = run->depth = path->positions[0] - path->contact;
+    run->force = 0.0;
+    memset(run->force_by, 0, sizeof run->force_by);
+    run->records = path->workspace;
+    run->capacity = path->count + MORE;
+}
+
+/* By Ting's law; NT_E_NO_SOLUTION where a contact that has shrunk grows again. */
+static nt_status follow(nt_run *run, const nt_viscoelastic_path *path, const nt_viscoelastic_result *result)
+{
+    nt_status status = NT_OK;
+    for (long i = 1; i < path->count && status == NT_OK; i++) {
+        status = advance(run, path->times[i], path->positions[i] - path->contact);
+        if (run->depth > run->profile.deepest)
+            return NT_E_RANGE;
+        put(run, result, i);
+    }
+    return status;
+}
+
 nt_status nt_viscoelastic_run(const nt_viscoelastic *contact, const nt_viscoelastic_path *path,
                               nt_viscoelastic_result *result, nt_problem *problem)
 {
@@ -203,30 +229,23 @@ nt_status nt_viscoelastic_run(const nt_viscoelastic *contact, const nt_viscoelas
         status = check_path(path, &range, problem);
     if (status != NT_OK)
         return status;
-    const int with_derivatives = result->derivatives != NULL;
     (void)nt_rheology_discretize(&contact->rheology, &range, KERNEL_ERROR, &spectrum); /* its error is reported */
-    nt_arms_make(&run.arms, &contact->rheology, &spectrum, with_derivatives);
+    nt_arms_make(&run.arms, &contact->rheology, &spectrum, result->derivatives != NULL);
     run.profile = nt_profile_make(&contact->shape, contact->thickness);
     run.step.h = run.past.h = 0.0;
     run.factor = 1.0 / (1.0 - contact->poisson_ratio * contact->poisson_ratio);
     run.compliance = contact->spring_constant > 0.0 ? 1.0 / contact->spring_constant : 0.0;
-    run.phase = NT_RUN_OUT;
-    run.time = path->times[0];
-    run.base = run.depth = path->positions[0] - path->contact;
-    run.force = 0.0;
-    memset(run.force_by, 0, sizeof run.force_by);
-    run.records = path->workspace;
-    run.capacity = path->count + MORE;
     result->arms = spectrum.count;
     result->kernel_error = spectrum.error;
+    begin(&run, path);
     put(&run, result, 0);
-    for (long i = 1; i < path->count && status == NT_OK; i++) {
-        status = advance(&run, path->times[i], path->positions[i] - path->contact);
-        if (run.depth > run.profile.deepest)
-            return wrong(problem, NT_E_RANGE, (nt_problem){"indentation", "m", run.depth, 0.0, run.profile.deepest});
-        if (status == NT_E_NO_SOLUTION)
-            return wrong(problem, status, (nt_problem){AGAIN, NT_UNIT_REASON, path->times[i], 0.0, 0.0});
-        put(&run, result, i);
+    status = follow(&run, path, result);
+    result->by_springs = status == NT_E_NO_SOLUTION;
+    if (result->by_springs) {
+        begin(&run, path);
+        status = nt_springs_run(&run, path, put, result);
     }
+    if (status == NT_E_RANGE)
+        return wrong(problem, status, (nt_problem){"indentation", "m", run.depth, 0.0, run.profile.deepest});
     return status;
 }

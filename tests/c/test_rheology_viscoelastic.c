@@ -5,7 +5,7 @@
 #include "assertions.h"
 #include "nanotouch/viscoelastic.h"
 
-enum { POINTS = 301, ROOM = 6000 };
+enum { POINTS = 301, ROOM = 40000 };
 
 static double times[POINTS], positions[POINTS], forces[POINTS], depths[POINTS], derivatives[POINTS * 3];
 static double workspace[ROOM];

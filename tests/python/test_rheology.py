@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+import itertools
+
 import mpmath
 import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import Rheology
 from nanotouch.contact.geometry import Shape
-from nanotouch.errors import InvalidValue, SolverError
+from nanotouch.errors import InvalidValue
 from scipy.special import beta as beta_function
 from scipy.special import betainc
 from ting_oracle import force
@@ -263,9 +265,69 @@ def test_refusals() -> None:
             law.force(**{"time": time, "position": position, "shape": PARABOLOID, **change})
     with pytest.raises(InvalidValue, match="1 of each"):
         Rheology("standard_linear_solid")
-    again = np.concatenate([position, position[1:]])
-    with pytest.raises(SolverError, match="grows again"):
-        law.force(np.arange(len(again)) * 0.05, again, PARABOLOID)
+
+
+def springs_by_midpoints(time: np.ndarray, depth: np.ndarray, fine: int) -> np.ndarray:
+    """The paraboloid's force on SERIES by 1500 springs and `fine` midpoint steps a point: another integrator."""
+    x = (np.arange(1500) + 0.5) / 1500 * np.sqrt(5e-6 * depth.max())
+    D, width = x**2 / 5e-6, np.sqrt(5e-6 * depth.max()) / 1500
+    u, z = np.zeros_like(x), np.zeros((3, len(x)))
+    E, tau = np.array(SERIES.arm_moduli), np.array(SERIES.relaxation_times)
+    force = [0.0]
+    h = (time[1] - time[0]) / fine
+    whole, half = np.exp(-h / tau), np.exp(-h / (2 * tau))
+    A = 500.0 + E @ half
+    for first, last in itertools.pairwise(depth):
+        for part in range(1, fine + 1):
+            z *= whole[:, None]
+            held = 500.0 * u + E @ z
+            way = np.maximum(first + (last - first) * part / fine - D - u, -held / A)
+            u += way
+            z += half[:, None] * way
+        force.append(float(np.maximum(500.0 * u + E @ z, 0.0).sum() * 2 * width * FACTOR))
+    return np.array(force)
+
+
+def test_contact_that_grows_again() -> None:
+    """Into the dent that it left, before that is gone; then back to the first force, once it is."""
+    time = np.linspace(0.0, 3.0, 601)
+    depth = np.interp(
+        time, [0.0, 0.5, 0.9, 1.5, 2.0, 2.1, 2.5, 3.0], np.array([0, 1, 0.3, 0.8, 0.1, -0.5, 0.6, 0]) * 1e-6
+    )
+    found = SERIES.force(time, depth, PARABOLOID)
+    assert found.by_springs
+    reference = springs_by_midpoints(time, depth, 8)
+    assert np.abs(found.force - reference).max() < 3e-4 * reference.max()  # 128 springs: some 1e-4
+    twice = np.interp(time * 30, [0.0, 4.5, 9.0, 81.0, 85.5, 90.0], np.array([-1, 1, -1, -1, 1, -1]) * 1e-6)
+    cycle = SERIES.force(time * 30, twice, PARABOLOID, spring_constant=0.05).force  # 35 of the slowest arm between
+    peaks = cycle[[30, 570]]
+    assert abs(peaks[1] / peaks[0] - 1) < 1e-3
+
+
+def test_elastic_contact_grows_again() -> None:
+    """Exponent 0 is Hertz on any way, to what 128 springs resolve."""
+    rng = np.random.default_rng(2)
+    depth = np.concatenate([[0.0], rng.uniform(-2e-7, 1e-6, 200)])
+    found = Rheology.power_law(E1, 0.0).force(np.arange(201) * 0.01, depth, PARABOLOID)
+    hertz = 4 / 3 * np.sqrt(5e-6) * np.clip(depth, 0, None) ** 1.5 * E1 * FACTOR
+    assert found.by_springs
+    assert np.abs(found.force - hertz).max() < 1e-4 * hertz.max()
+
+
+def test_noise_in_a_pause() -> None:
+    """A base that jitters by 0.1 nm in a pause changes the force by no more than its stiffness times that."""
+    time, depth = held(800)
+    jitter = np.random.default_rng(3).normal(size=801) * 1e-10 * ((time > 1.0) & (time < 1.5))
+    options = {"spring_constant": 0.05, "derivatives": True}
+    still, shaken = (SERIES.force(time, depth + part, PARABOLOID, **options) for part in (0.0, jitter))
+    assert shaken.by_springs
+    assert not still.by_springs
+    assert np.abs(still.force - shaken.force).max() < 4e-10 * 0.05 + 1e-4 * still.force.max()
+    assert still.derivatives is not None
+    assert shaken.derivatives is not None
+    scale = np.abs(still.derivatives).max(axis=0)
+    difference = np.abs(still.derivatives - shaken.derivatives) / scale
+    assert np.sqrt((difference**2).mean(axis=0)).max() < 5e-3  # by `contact` the springs' steps show
 
 
 def test_package_knows_it() -> None:

@@ -62,7 +62,7 @@ static nt_viscoelastic contact_of(const nt_shape &shape, const nt_rheology &rheo
     return contact;
 }
 
-// Forces, indentations, derivatives (or None), arms, error of the kernel.
+// Forces, indentations, derivatives (or None), arms, error of the kernel, whether springs followed it.
 static py::tuple run(const nt_viscoelastic &contact, const Array &times, const Array &positions, double first_touch,
                      bool with_derivatives)
 {
@@ -89,7 +89,7 @@ static py::tuple run(const nt_viscoelastic &contact, const Array &times, const A
     }
     raise_on(status, problem, "viscoelastic contact");
     const py::object by = with_derivatives ? py::object(derivatives) : py::object(py::none());
-    return py::make_tuple(forces, indentations, by, result.arms, result.kernel_error);
+    return py::make_tuple(forces, indentations, by, result.arms, result.kernel_error, result.by_springs != 0);
 }
 
 static py::list fields()

@@ -46,5 +46,6 @@
 #include "nanotouch/version.h"
 #include "nanotouch/view.h"
 #include "nanotouch/viscoelastic.h"
+#include "nanotouch/viscoelastic_loop.h"
 
 #endif

@@ -46,14 +46,14 @@ typedef struct nt_viscoelastic_result {
                           * rheology in their order [N over the parameter's unit] */
     int arms;            /* of the sum of exponentials */
     double kernel_error; /* of it, as nt_spectrum.error; the force errs by some tenth of that */
+    int by_springs;      /* 1: a contact that had shrunk grew again, and 128 springs followed it; 3e-4 of F_max */
 } nt_viscoelastic_result;
 
 /* Doubles that a history of so many points needs, with derivatives or without. */
 NT_API long nt_viscoelastic_workspace(const nt_viscoelastic *contact, long count, int with_derivatives);
 /* Along a history. The derivatives are those of the discretized law, exact but for the grid of the first steps of a
  * contact. NT_OK; NT_E_NOT_FINITE or NT_E_RANGE with a problem (the field and its value: times that do not increase, a
- * first point in contact, a layer or a sphere pressed beyond its law); NT_E_NO_SOLUTION with the time at which a
- * contact grows again that has shrunk. */
+ * first point in contact, a layer or a sphere pressed beyond its law). */
 NT_API nt_status nt_viscoelastic_run(const nt_viscoelastic *contact, const nt_viscoelastic_path *path,
                                      nt_viscoelastic_result *result, nt_problem *problem);
 
