@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 import mpmath
 from mpmath import mpf
 from nanotouch import contact, forces
-from nanotouch.contact import geometry
+from nanotouch.contact import geometry, reduced
+from nanotouch.forces import LawValue
 
 EPSILON, BOLTZMANN = mpf("8.8541878128e-12"), mpf("1.380649e-23")
 DIGITS, LIMIT_DIGITS = 150, 1600
@@ -34,6 +35,8 @@ class Law(NamedTuple):
     folds: Callable[[Numbers], list[Numbers]] = lambda usual: [usual | {"gap": usual["minimum_gap"]}]
     tolerance: float = 1e-9
     """of eps0 and k_B by their digits, and of arithmetic"""
+    is_state: bool = False
+    """``energy`` gives a state, three numbers, to be compared as they are"""
 
 
 def scale(unit: str, length: float, energy: float) -> float:
@@ -49,14 +52,17 @@ def scale(unit: str, length: float, energy: float) -> float:
 def truths(law: Law, point: Numbers) -> list[tuple[float, float, float]]:
     """U, F, k as doubles; at zeros and infinities their limits, none where there is none, two at a fold."""
     if all(math.isfinite(value) and value != 0.0 for value in point.values()):
-        with mpmath.workdps(DIGITS if min(map(abs, point.values())) > 1e-100 else LIMIT_DIGITS):
+        usual = 80 if law.is_state else DIGITS
+        tiny = 700 if law.is_state else LIMIT_DIGITS
+        with mpmath.workdps(usual if min(map(abs, point.values())) > 1e-100 else tiny):
             return [_rounded(_derived(law, {name: mpf(value) for name, value in point.items()}))]
     found = []
+    digits, powers = (400, (120, 130)) if law.is_state else (LIMIT_DIGITS, (600, 660))
     for side in (1, -1) if point[law.at] == 0.0 else (1,):
-        with contextlib.suppress(ArithmeticError, ValueError, TypeError), mpmath.workdps(LIMIT_DIGITS):
+        with contextlib.suppress(ArithmeticError, ValueError, TypeError), mpmath.workdps(digits):
             one, other = (
                 _rounded(_derived(law, {n: _near(v, power, side if n == law.at else 1) for n, v in point.items()}))
-                for power in (600, 660)
+                for power in powers
             )
             if all(map(_alike, one, other)):
                 found.append(other)
@@ -79,6 +85,8 @@ def _rounded(values: Any) -> Any:
 
 def _derived(law: Law, point: dict[str, Any]) -> tuple[Any, Any, Any]:
     """Energy, force and stiffness; the sign of the force is + repulsive, that of the stiffness dF/d(indentation)."""
+    if law.is_state:
+        return law.energy(**point)  # type: ignore[no-any-return]
     sign = -1 if law.at == "gap" else 1
     at = point[law.at]
     held = law.hold and at < point[law.hold]
@@ -201,6 +209,32 @@ def _largest_root(coefficients: list[Any]) -> Any:
     return far
 
 
+def _dugdale(lam: Any, radius: Any) -> tuple[Any, Any, Any]:
+    """Indentation and load of Maugis 1992 as printed, in his units: m = c/a by bisection of ln(m - 1)."""
+
+    def parts(u: Any) -> tuple[Any, Any, Any]:
+        m = 1 + mpmath.exp(u)
+        return m, mpmath.sqrt(m * m - 1), mpmath.acos(1 / m)
+
+    def griffith(u: Any) -> Any:
+        m, root, angle = parts(u)
+        outer = lam * radius**2 / 2 * (root + (m * m - 2) * angle)
+        return outer + 4 * lam**2 * radius / 3 * (root * angle - m + 1) - 1
+
+    low, high = mpf(-400), mpf(4000)
+    for _ in range(300):
+        middle = (low + high) / 2
+        low, high = (low, middle) if griffith(middle) > 0 else (middle, high)
+    m, root, angle = parts(low)
+    load = radius**3 - lam * radius**2 * (root + m * m * angle)
+    return radius**2 - mpf(4) / 3 * lam * radius * root, load, mpf(0)
+
+
+def _at_radius(lam: float, radius: float) -> Any:
+    state = reduced.at_radius(lam, radius)
+    return LawValue(state.indentation, state.load, 0.0, state.radius)
+
+
 GAP = {"gap": "m", "radius": "m", "minimum_gap": "m"}
 OF_SHAPE = {"indentation": "m", "effective_modulus": "Pa", "radius": "m", "half_angle": "", "work_of_adhesion": "J/m2"}
 
@@ -281,5 +315,7 @@ LAWS = (
         at="indentation", folds=_touching),
     _law("punch", contact.punch, _punch, {"indentation": 1e-9, "effective_modulus": 7e10, "radius": 2e-8})._replace(
         at="indentation", folds=_touching),
+    Law("Maugis-Dugdale", _at_radius, _dugdale, {"lam": 1.0, "radius": 1.5}, {"lam": "", "radius": ""}, at="radius",
+        is_state=True, folds=lambda usual: [usual | {"lam": 0.9379, "radius": at} for at in (1e-6, 1.0)]),
     _law("cone with adhesion", _cone_jkr, _cone_adhesive, _STEEP)._replace(at="indentation", folds=_fold_of_cone),
 )  # fmt: skip

@@ -16,7 +16,7 @@ from extremes_laws import LAWS
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_laws(law: extremes.Law) -> None:
     for kind in KINDS:
-        found = extremes.of_law(law, kind, np.random.default_rng(1), 10)
+        found = extremes.of_law(law, kind, np.random.default_rng(1), 5)
         assert not found.wrong, kind
         assert found.tried == found.right + sum(found.refused.values())
 

@@ -112,6 +112,9 @@ static double radius_excess(double y, const void *context)
     return point.a / wanted->a - 1.0;
 }
 
+/* Reduced radius below which the state is that at a = 0, to a part in 1e100, and squares would underflow. */
+#define LEAST_RADIUS 1e-100
+
 nt_status nt_maugis_at_radius(const nt_maugis *maugis, double radius, nt_contact_state *state)
 {
     if (!isfinite(radius))
@@ -124,7 +127,7 @@ nt_status nt_maugis_at_radius(const nt_maugis *maugis, double radius, nt_contact
         return NT_OK;
     }
     double y = 0.0;
-    if (a > 0.0) {
+    if (a > LEAST_RADIUS) {
         const radius_context context = {maugis->lambda, a};
         const double guess = nt_maugis_parameter_guess(maugis->lambda, a); /* within 30 % */
         const double bracket[2] = {0.25 * guess, 4.0 * guess};
@@ -132,7 +135,10 @@ nt_status nt_maugis_at_radius(const nt_maugis *maugis, double radius, nt_contact
         if (status != NT_OK)
             return status;
     }
-    return nt_maugis_at_parameter(maugis, y, state);
+    const nt_status status = nt_maugis_at_parameter(maugis, y, state);
+    if (status == NT_OK && a <= LEAST_RADIUS)
+        state->value.a = radius;
+    return status;
 }
 
 nt_status nt_maugis_at_parameter(const nt_maugis *maugis, double y, nt_contact_state *state)
