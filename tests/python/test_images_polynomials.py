@@ -111,9 +111,12 @@ def test_levelling_twice_is_levelling_once(z: synthetic.Array, method: str) -> N
     once, first = level(topography(z), method)
     twice, _ = level(topography(once), method)
     rows = max((step.removed_range for step in first.steps if step.method in ("rows", "medians")), default=0.0)
-    # a smoothing is no projection: on images of a few dozen rows a part of the offsets shows only the second time,
-    # and rows that were shifted have another plane
-    np.testing.assert_allclose(twice, once, rtol=0, atol=0.5e-9 + 0.3 * rows)
+    # a smoothing is no projection: on images of a few dozen rows a part of the offsets shows only the second time, and
+    # rows that were shifted have another plane. Of the row beside a step across all rows all of it may: before, its
+    # offset looks like a part of the step
+    *others, most = np.sort(np.abs(twice - once).max(axis=1))
+    assert max(others) <= 0.5e-9 + 0.3 * rows
+    assert most <= 0.5e-9 + rows
 
 
 @settings(max_examples=25, deadline=None)
