@@ -97,13 +97,16 @@ def _class(row: Row) -> str:
     return row.verdict.kind
 
 
+def fields() -> list[str]:
+    """A row for each format: what varies, and how."""
+    modules = [importlib.import_module(name) for name in MODULES]
+    varied = ["; ".join(f"{key}: {_values(row)}" for key, row in module.GRID.items()) for module in modules]
+    return [f"| {module.FORMAT} | {text} |" for module, text in zip(modules, varied, strict=True)]
+
+
 def page(found: Sequence[Row], asked: str) -> str:
     """What is read, with which fields, and what is refused and how: for the documentation."""
-    lines = [f"`{asked}`:", "", table(found), "", "| format | fields that vary |", "|---|---|"]
-    for name in MODULES:
-        module = importlib.import_module(name)
-        fields = "; ".join(f"{key}: {_values(row)}" for key, row in module.GRID.items())
-        lines.append(f"| {module.FORMAT} | {fields} |")
+    lines = [f"`{asked}`:", "", table(found), "", "| format | fields that vary |", "|---|---|", *fields()]
     lines += ["", "| format | refused | files | how |", "|---|---|---|---|"]
     reasons = Counter((row.made.format, _class(row), _pattern(row)) for row in found if row.verdict.kind == "refused")
     for (name, kind, reason), number in sorted(reasons.items()):

@@ -188,3 +188,8 @@ def test_what_the_maker_prints(
     if not path.exists():
         pytest.skip(f"real data not here: {path}")
     assert read(path) == pytest.approx(printed, rel=near), where
+
+
+def test_the_page_of_formats_tells_what_varies_now() -> None:
+    page = (Path(__file__).parents[2] / "docs/formats.md").read_text(encoding="utf-8")
+    assert [row for row in generated.fields() if row not in page] == []
