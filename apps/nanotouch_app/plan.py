@@ -40,7 +40,12 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--relative-accuracy",
         metavar="SHARE",
-        help="largest error, over the larger of quantity and pull-off: 1%%, 1e-6; 0: exact",
+        help="largest error, over the larger of quantity and pull-off: 1%%, 1e-6",
+    )
+    parser.add_argument(
+        "--bound",
+        choices=("kept", "exact", "any"),
+        help="kept: no more than that (default); exact: every law in full; any: else the least there is, or none",
     )
     parser.add_argument("--force-floor", metavar="FORCE", help="forces below this cannot be felt, such as 10pN")
     parser.add_argument(
@@ -72,6 +77,8 @@ def run(args: argparse.Namespace) -> int:
         demand["demand.force_floor"] = parse_quantity(args.force_floor, "N")
     if args.quantity is not None:
         demand["demand.quantity"] = args.quantity
+    if args.bound is not None:
+        demand["demand.bound"] = args.bound
     if args.budget is not None:
         demand["demand.budget"] = args.budget
     try:

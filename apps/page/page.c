@@ -115,7 +115,7 @@ PAGE_API(page_check) int page_check(int kind)
 /* What was wrong last, in words: the field with its range, or what the status says. */
 PAGE_API(page_problem) const char *page_problem(int status)
 {
-    if (world.problem.field)
+    if (world.problem.field || world.problem.code != NT_PROBLEM_RANGE)
         return nt_problem_print(&world.problem, words, sizeof words);
     return nt_status_message((nt_status)status);
 }

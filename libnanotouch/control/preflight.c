@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "core/clamp.h"
+#include "core/problem.h"
 #include "nanotouch/material.h"
 
 #define TARE_HALF 0.05     /* [s] */
@@ -176,8 +177,8 @@ static nt_problem bad_sample(uint32_t flags)
     };
     for (size_t i = 0; i < sizeof named / sizeof *named; ++i)
         if (flags & named[i].flag)
-            return (nt_problem){named[i].field, "no|yes", 1.0, 0.0, 0.0};
-    return (nt_problem){"a sample before arming", "", NAN, -INFINITY, INFINITY};
+            return nt_problem_of(named[i].field, "no|yes", 1.0, 0.0, 0.0);
+    return nt_problem_of("a sample before arming", "", NAN, -INFINITY, INFINITY);
 }
 
 nt_problem nt_preflight_problem(const nt_preflight *preflight, const nt_preflight_state *state)
@@ -188,18 +189,18 @@ nt_problem nt_preflight_problem(const nt_preflight *preflight, const nt_prefligh
     case NT_PREFLIGHT_BAD_SAMPLE:
         return bad_sample((uint32_t)value);
     case NT_PREFLIGHT_DEFLECTION_BIAS:
-        return (nt_problem){"deflection bias", "m", value, -limits->deflection_bias, limits->deflection_bias};
+        return nt_problem_of("deflection bias", "m", value, -limits->deflection_bias, limits->deflection_bias);
     case NT_PREFLIGHT_DEFLECTION_DRIFT:
-        return (nt_problem){"deflection drift", "m/s", value, -limits->deflection_drift, limits->deflection_drift};
+        return nt_problem_of("deflection drift", "m/s", value, -limits->deflection_drift, limits->deflection_drift);
     case NT_PREFLIGHT_GAUGE_BIAS:
-        return (nt_problem){"gauge bias", "N", value, -limits->gauge_bias, limits->gauge_bias};
+        return nt_problem_of("gauge bias", "N", value, -limits->gauge_bias, limits->gauge_bias);
     case NT_PREFLIGHT_GAUGE_DRIFT:
-        return (nt_problem){"gauge drift", "N/s", value, -limits->gauge_drift, limits->gauge_drift};
+        return nt_problem_of("gauge drift", "N/s", value, -limits->gauge_drift, limits->gauge_drift);
     case NT_PREFLIGHT_STAGE:
-        return (nt_problem){"stage sign test", "m", value, -most_move(preflight), -least_move(preflight)};
+        return nt_problem_of("stage sign test", "m", value, -most_move(preflight), -least_move(preflight));
     case NT_PREFLIGHT_RUNNING:
     case NT_PREFLIGHT_PASSED:
         break;
     }
-    return (nt_problem){"", "", 0.0, 0.0, 0.0};
+    return nt_problem_of("", "", 0.0, 0.0, 0.0);
 }

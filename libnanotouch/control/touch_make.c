@@ -40,22 +40,21 @@ static nt_status check_against_rig(const nt_settings *settings, const nt_rig *ri
     const int projects = rig->master.axes == 1.0 && rig->probe.lateral_stiffness > 0.0;
     const double share = fabs(settings->gains.projection_x) + fabs(settings->gains.projection_y);
     const nt_problem promises[] = {
-        {"gains.rate", "Hz", settings->gains.rate, 0.0, stale_rate(&rig->converters)},
-        {"limits.force", "N", limits->force, 0.0, saturation},
-        {"gains.set_point", "N", settings->gains.set_point, 0.0, limits->force},
-        {"limits.stage_speed", "m/s", limits->stage_speed, 0.0, rig->stage.max_speed},
-        {"limits.retract_speed", "m/s", limits->retract_speed, 0.0, rig->stage.max_speed},
-        {"limits.motor_force", "N", limits->motor_force, 0.0, rig->master.max_force},
-        {"gains.projection_x, _y (of a master of one axis, over a lever of known lateral_stiffness)", "",
-         projects ? 0.0 : share, 0.0, 0.0},
-        {"gains.force_gain", "", needs_gauge && !rig->master.gauge ? settings->gains.force_gain : 0.0, 0.0, 0.0},
+        nt_problem_of("gains.rate", "Hz", settings->gains.rate, 0.0, stale_rate(&rig->converters)),
+        nt_problem_of("limits.force", "N", limits->force, 0.0, saturation),
+        nt_problem_of("gains.set_point", "N", settings->gains.set_point, 0.0, limits->force),
+        nt_problem_of("limits.stage_speed", "m/s", limits->stage_speed, 0.0, rig->stage.max_speed),
+        nt_problem_of("limits.retract_speed", "m/s", limits->retract_speed, 0.0, rig->stage.max_speed),
+        nt_problem_of("limits.motor_force", "N", limits->motor_force, 0.0, rig->master.max_force),
+        nt_problem_of("gains.projection_x, _y (of a master of one axis, over a lever of known lateral_stiffness)", "",
+                      projects ? 0.0 : share, 0.0, 0.0),
+        nt_problem_of("gains.force_gain", "", needs_gauge && !rig->master.gauge ? settings->gains.force_gain : 0.0, 0.0,
+                      0.0),
     };
     for (size_t i = 0; i < sizeof promises / sizeof promises[0]; ++i) {
         if (promises[i].value <= promises[i].maximum)
             continue;
-        if (problem)
-            *problem = promises[i];
-        return NT_E_RANGE;
+        return nt_problem_refuse(problem, promises[i]);
     }
     return NT_OK;
 }

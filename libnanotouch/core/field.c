@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/problem.h"
+
 #define NO_CHOICE 127 /* fits every enum, and no list of words is as long */
 
 /* An enum has the size of an int, but for compilers that take the least that holds its values. */
@@ -62,7 +64,7 @@ nt_status nt_field_check(const nt_field *fields, int count, const void *object, 
         if (value >= field->minimum && value <= field->maximum && !(is_choice && value != floor(value)))
             continue;
         if (problem != NULL)
-            *problem = (nt_problem){field->name, field->unit, value, field->minimum, field->maximum};
+            *problem = nt_problem_of(field->name, field->unit, value, field->minimum, field->maximum);
         return isfinite(value) ? NT_E_RANGE : NT_E_NOT_FINITE;
     }
     return NT_OK;

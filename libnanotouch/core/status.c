@@ -26,31 +26,95 @@ static double inside(double limit, double up)
     return lost > 1e-9 ? limit + up * 5.1e-6 * fabs(limit) : limit; /* less is the rounding of this division */
 }
 
+static const char *const problem_words[] = {
+#define NT_PROBLEM_WORDS(name, words) words,
+    NT_PROBLEM_LIST(NT_PROBLEM_WORDS)
+#undef NT_PROBLEM_WORDS
+};
+
+/* What is written so far. */
+typedef struct writing {
+    char *text;
+    unsigned size, length;
+} writing;
+
+static void add(writing *w, const char *part)
+{
+    while (*part != '\0' && w->length + 1 < w->size)
+        w->text[w->length++] = *part++;
+    w->text[w->length] = '\0';
+}
+
+static void add_number(writing *w, double value, const char *unit)
+{
+    char number[32];
+    (void)snprintf(number, sizeof number, "%g", value);
+    add(w, number);
+    add(w, unit[0] == '\0' ? "" : " ");
+    add(w, unit);
+}
+
+static void add_words(writing *w, const nt_problem *problem)
+{
+    const char *words = problem_words[problem->code], *gap = strstr(words, "{}");
+    for (; *words != '\0'; ++words)
+        if (words == gap) {
+            add(w, problem->cause ? problem->cause : "a law");
+            ++words;
+        } else {
+            add(w, (const char[]){*words, '\0'});
+        }
+}
+
+/* "field (words) = value unit" */
+static void add_value(writing *w, const nt_problem *problem, const char *unit)
+{
+    add(w, problem->field == NULL ? "?" : problem->field);
+    if (problem_words[problem->code][0] != '\0') {
+        add(w, " (");
+        add_words(w, problem);
+        add(w, ")");
+    }
+    add(w, " = ");
+    add_number(w, problem->value, unit);
+}
+
+/* The names of a choice are no unit. */
+static void add_range(writing *w, const nt_problem *problem, const char *unit, int is_choice)
+{
+    if (isinf(problem->minimum) && problem->minimum > 0.0) {
+        add(w, ": none is known to be valid");
+        return;
+    }
+    add(w, ": valid is ");
+    add_number(w, is_choice ? problem->minimum : inside(problem->minimum, 1.0), "");
+    add(w, " .. ");
+    add_number(w, is_choice ? problem->maximum : inside(problem->maximum, -1.0), is_choice ? "" : unit);
+    add(w, is_choice ? " (" : "");
+    add(w, is_choice ? unit : "");
+    add(w, is_choice ? ")" : "");
+}
+
 const char *nt_problem_print(const nt_problem *problem, char *text, unsigned size)
 {
     if (problem == NULL || text == NULL || size == 0)
         return text;
-    const char *field = problem->field == NULL ? "?" : problem->field;
     const char *unit = problem->unit == NULL ? "" : problem->unit;
-    if (strcmp(unit, NT_UNIT_REASON) == 0) {
-        (void)snprintf(text, size, "%s", field);
-        return text;
+    const int is_choice = strchr(unit, '|') != NULL;
+    writing w = {text, size, 0};
+    text[0] = '\0';
+    if (problem->field == NULL && problem_words[problem->code][0] != '\0') {
+        add_words(&w, problem);
+    } else {
+        add_value(&w, problem, is_choice ? "" : unit);
+        add_range(&w, problem, unit, is_choice);
     }
-    if (strcmp(unit, NT_UNIT_ERROR) == 0) { /* no field, but a reason */
-        if (isfinite(problem->value))
-            (void)snprintf(text, size, "%s: error %.2g where %.2g is demanded", field, problem->value,
-                           problem->maximum);
-        else
-            (void)snprintf(text, size, "%s: no bound of the error is known", field);
-        return text;
+    if (problem->remedy.field) {
+        add(&w, "; ");
+        add(&w, problem->remedy.field);
+        add(&w, " = ");
+        add_number(&w, problem->remedy.value, problem->remedy.unit);
+        add(&w, " works");
     }
-    if (strchr(unit, '|') != NULL) { /* a choice: its unit are the names */
-        (void)snprintf(text, size, "%s = %g: valid is %g .. %g (%s)", field, problem->value, problem->minimum,
-                       problem->maximum, unit);
-        return text;
-    }
-    const char *space = unit[0] == '\0' ? "" : " ";
-    (void)snprintf(text, size, "%s = %g%s%s: valid is %g .. %g%s%s", field, problem->value, space, unit,
-                   inside(problem->minimum, 1.0), inside(problem->maximum, -1.0), space, unit);
     return text;
 }

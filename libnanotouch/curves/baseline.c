@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "core/problem.h"
 #include "core/variants.h"
 #include "curves/bend.h"
 #include "curves/line.h"
@@ -149,7 +150,7 @@ static nt_status between(const nt_curve_segment *segment, const nt_curve_choice 
         force[count++] = segment->force[i];
     }
     if (count < NT_CURVE_FEWEST) {
-        *problem = (nt_problem){"baseline (points between its ends)", "", (double)count, NT_CURVE_FEWEST, 1e9};
+        *problem = nt_problem_of("baseline (points between its ends)", "", (double)count, NT_CURVE_FEWEST, 1e9);
         return NT_E_RANGE;
     }
     const nt_curve_segment part = {z, force, count};

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/problem.h"
 #include "curves/bend.h"
 #include "curves/flicker.h"
 #include "curves/joint.h"
@@ -32,7 +33,7 @@ static nt_status check_values(const double values[], long count, const nt_proble
     const int good = nt_curve_all_within(values, count, largest_value);
     for (long i = 0; !good && i < count; i++)
         if (!(fabs(values[i]) <= largest_value)) {
-            *problem = (nt_problem){column->field, column->unit, values[i], -largest_value, largest_value};
+            *problem = nt_problem_of(column->field, column->unit, values[i], -largest_value, largest_value);
             return isfinite(values[i]) ? NT_E_RANGE : NT_E_NOT_FINITE;
         }
     return NT_OK;
@@ -49,7 +50,7 @@ nt_status nt_curve_segment_check(const nt_curve_segment *segment, nt_problem *pr
         return status;
     if (nt_curve_highest(segment->z, segment->count) > nt_curve_lowest(segment->z, segment->count))
         return NT_OK;
-    *found = (nt_problem){"z (travel)", "m", 0.0, 1e-18, largest_value};
+    *found = nt_problem_of("z (travel)", "m", 0.0, 1e-18, largest_value);
     return NT_E_RANGE;
 }
 
@@ -200,9 +201,9 @@ nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, do
         return NT_OK;
     }
     if (problem)
-        *problem = (nt_problem){
+        *problem = nt_problem_of(
             "points of a branch", "",
             (double)(curve->approach.count > curve->retract.count ? curve->approach.count : curve->retract.count),
-            NT_CURVE_FEWEST, 1e9};
+            NT_CURVE_FEWEST, 1e9);
     return NT_E_RANGE;
 }

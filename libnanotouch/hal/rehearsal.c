@@ -32,7 +32,7 @@ static nt_status broken(play *p, const char *rule, double value, double minimum,
 static nt_status named(play *p, nt_status status, const char *operation)
 {
     if (status != NT_OK && p->problem && !p->problem->field)
-        *p->problem = (nt_problem){operation, "nt_status", (double)status, NT_OK, NT_OK};
+        *p->problem = nt_problem_of(operation, "nt_status", (double)status, NT_OK, NT_OK);
     return status;
 }
 

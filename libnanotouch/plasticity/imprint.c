@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/problem.h"
 #include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/plasticity.h"
@@ -41,8 +42,8 @@ nt_status nt_displacement_check(const nt_displacement *displacement, nt_problem 
 {
     const nt_status status = nt_field_check(displacement_fields, DISPLACEMENT_FIELDS, displacement, problem);
     if (status == NT_OK && displacement->piled_up + displacement->debris > 1.0)
-        return refuse(problem, (nt_problem){"debris (with piled_up above 1)", "", displacement->debris, 0.0,
-                                            1.0 - displacement->piled_up});
+        return refuse(problem, nt_problem_of("debris (with piled_up above 1)", "", displacement->debris, 0.0,
+                                             1.0 - displacement->piled_up));
     return status;
 }
 
@@ -83,13 +84,13 @@ static nt_status check(const nt_imprint *imprint, const nt_displacement *displac
         if (!isfinite(numbers[i]))
             return NT_E_NOT_FINITE;
     if (!(imprint->depth >= 0.0 && imprint->depth <= limits))
-        return refuse(problem, (nt_problem){"imprint.depth", "m", imprint->depth, 0.0, limits});
+        return refuse(problem, nt_problem_of("imprint.depth", "m", imprint->depth, 0.0, limits));
     if (!(imprint->radius >= NT_IMPRINT_PIXELS * pitch && imprint->radius <= limits))
-        return refuse(problem, (nt_problem){"imprint.radius (6 pixels at least)", "m", imprint->radius,
-                                            NT_IMPRINT_PIXELS * pitch, limits});
+        return refuse(problem, nt_problem_of("imprint.radius (6 pixels at least)", "m", imprint->radius,
+                                             NT_IMPRINT_PIXELS * pitch, limits));
     if (displacement->piled_up > 0.0 && displacement->ridge_width * imprint->radius < 2.0 * pitch)
-        return refuse(problem, (nt_problem){"ridge_width (2 pixels at least)", "", displacement->ridge_width,
-                                            2.0 * pitch / imprint->radius, 10.0});
+        return refuse(problem, nt_problem_of("ridge_width (2 pixels at least)", "", displacement->ridge_width,
+                                             2.0 * pitch / imprint->radius, 10.0));
     return NT_OK;
 }
 
@@ -124,7 +125,7 @@ nt_status nt_imprint_extent(const nt_imprint *imprint, const nt_displacement *di
         const double high = fmax(imprint->start[i], imprint->end[i]) + reach;
         const double far = (double)(pixels[i] - 1) * pitch[i];
         if (!span(low, high, pitch[i], pixels[i], &first[i], &count[i]))
-            return refuse(problem, (nt_problem){names[i], "m", low < 0.0 ? low : high, 0.0, far});
+            return refuse(problem, nt_problem_of(names[i], "m", low < 0.0 ? low : high, 0.0, far));
     }
     *edit = (nt_edit){.first_x = first[0], .first_y = first[1], .count_x = count[0], .count_y = count[1]};
     return NT_OK;

@@ -8,6 +8,8 @@
 #include "nanotouch/material.h"
 #include "nanotouch/plasticity.h"
 
+#include "core/problem.h"
+
 #define FIELD(path, ...) NT_FIELD(nt_scratching, path, __VA_ARGS__)
 
 static const nt_field scratching_fields[] = {
@@ -57,7 +59,7 @@ nt_status nt_scratch(const nt_scratching *scratching, double load, nt_groove *gr
         const double layer = t > 0.0 ? fmin(t, deepest) : deepest;
         const double most = per_depth * (s->hardness * layer + s->substrate_hardness * (deepest - layer));
         if (problem != NULL)
-            *problem = (nt_problem){"load (contact radius up to half of the tip's)", "N", load, 0.0, most};
+            *problem = nt_problem_of("load (contact radius up to half of the tip's)", "N", load, 0.0, most);
         return NT_E_RANGE;
     }
     const double below = is_cut ? front(s->radius, depth - t) : 0.0;

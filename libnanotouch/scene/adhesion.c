@@ -86,7 +86,7 @@ nt_status nt_plan_check_distance(const nt_scene *scene, nt_problem *problem)
     if (!has_part(scene) || scene->adhesion.given == NT_ADHESION_GIVEN_PULL_OFF || H <= most * (1.0 + 1e-12))
         return NT_OK;
     if (problem)
-        *problem = (nt_problem){"adhesion.hamaker_constant", "J", H, 0.0, most};
+        *problem = (nt_problem){.field = "adhesion.hamaker_constant", .unit = "J", .value = H, .maximum = most};
     return NT_E_RANGE;
 }
 

@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The cheapest combination of forms whose errors add up to no more than the demand: all of them are tried, a few
+ * The cheapest nt_plan_choice of forms whose errors add up to no more than the demand: all of them are tried, a few
  * hundred at most. No plan can then cost more than everything-on; where two cost the same, the truer one is taken. */
-#include <string.h>
-
 #include "scene/terms/term.h"
 
-typedef struct combination {
-    int index[NT_PLAN_TERMS];
-    double error, cost;
-} combination;
-
 /* What the first law beside contact costs more, 0: cost, 1: latency. */
-static double beside(const nt_plan_options *options, const combination *tried, int which)
+static double beside(const nt_plan_options *options, const nt_plan_choice *tried, int which)
 {
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (options->option[term][tried->index[term]].form != NT_FORM_OFF)
@@ -19,7 +12,7 @@ static double beside(const nt_plan_options *options, const combination *tried, i
     return 0.0;
 }
 
-static void weigh(const nt_plan_options *options, combination *tried)
+static void weigh(const nt_plan_options *options, nt_plan_choice *tried)
 {
     tried->error = 0.0;
     tried->cost = beside(options, tried, 0);
@@ -29,8 +22,8 @@ static void weigh(const nt_plan_options *options, combination *tried)
     }
 }
 
-/* The next combination; 0 after the last. */
-static int next(const nt_plan_options *options, combination *tried)
+/* The next nt_plan_choice; 0 after the last. */
+static int next(const nt_plan_options *options, nt_plan_choice *tried)
 {
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
         if (++tried->index[term] < options->count[term])
@@ -40,19 +33,27 @@ static int next(const nt_plan_options *options, combination *tried)
     return 0;
 }
 
-/* What the field of the demand would have to be, up to its own maximum. */
-static nt_status refuse(nt_problem *problem, const char *name, double value, double minimum)
+/* The last option of every term is its fullest. */
+static nt_plan_choice everything(const nt_plan_options *options)
 {
-    int count = 0;
-    const nt_field *fields = nt_demand_fields(&count);
-    for (int i = 0; i < count; ++i)
-        if (problem && strcmp(fields[i].name, name) == 0)
-            *problem = (nt_problem){fields[i].name, fields[i].unit, value, minimum, fields[i].maximum};
-    return NT_E_RANGE;
+    nt_plan_choice full;
+    for (int term = 0; term < NT_PLAN_TERMS; ++term)
+        full.index[term] = options->count[term] - 1;
+    weigh(options, &full);
+    return full;
 }
 
-static void take(nt_plan *plan, const nt_plan_options *options, const combination *best)
+int nt_plan_is_alone(const nt_plan_options *options, const nt_plan_choice *choice)
 {
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (options->option[term][choice->index[term]].form != NT_FORM_OFF)
+            return 0;
+    return 1;
+}
+
+void nt_plan_take(nt_plan *plan, const nt_plan_options *options, const nt_plan_choice *best)
+{
+    plan->full_cost = everything(options).cost;
     plan->on_count = 0;
     plan->latency = 0.0;
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
@@ -77,35 +78,24 @@ static void take(nt_plan *plan, const nt_plan_options *options, const combinatio
     plan->cost = best->cost;
 }
 
-/* The last option of every term is its fullest. */
-static combination everything(const nt_plan_options *options)
+nt_status nt_plan_choose(const nt_plan_options *options, double accuracy, double budget, nt_plan_choice *choice,
+                         nt_problem *problem)
 {
-    combination full;
-    for (int term = 0; term < NT_PLAN_TERMS; ++term)
-        full.index[term] = options->count[term] - 1;
-    weigh(options, &full);
-    return full;
-}
-
-nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
-{
-    const double demanded = plan->demand.relative_accuracy, budget = plan->demand.budget;
-    const combination full = everything(options);
-    combination best = full, tried = {{0}, 0.0, 0.0};
-    int found = !(demanded > 0.0);
-    plan->full_cost = full.cost;
+    const nt_plan_choice full = everything(options);
+    nt_plan_choice best = full, tried = {{0}, 0.0, 0.0};
+    int found = !(accuracy > 0.0);
     do {
         weigh(options, &tried);
-        if (!(tried.error <= demanded) || !(demanded > 0.0))
+        if (!(tried.error <= accuracy) || !(accuracy > 0.0))
             continue;
         if (!found || tried.cost < best.cost || (tried.cost == best.cost && tried.error < best.error))
             best = tried;
         found = 1;
     } while (next(options, &tried));
     if (!found)
-        return refuse(problem, "demand.relative_accuracy", demanded, full.error);
+        return nt_problem_refuse(problem, nt_demand_accuracy(accuracy, full.error));
     if (budget > 0.0 && best.cost > budget * NT_BUDGET_ROUNDS)
-        return refuse(problem, "demand.budget", budget, best.cost);
-    take(plan, options, &best);
+        return nt_problem_refuse(problem, nt_demand_budget(budget, best.cost));
+    *choice = best;
     return NT_OK;
 }

@@ -36,6 +36,8 @@ static double pull_of(const nt_plan *plan)
 /* What small forces are measured by where nothing pulls. */
 #define SMALL_LOAD 1e-3 /* of the largest load */
 
+#define STRICTEST 1e-12 /* demand that can be kept at all: below it no force is too small to be felt */
+
 /* From here on the bound holds, in release gaps: nearer, k errs by half of what rounding and interpolation do to the
  * place of its fold over the distance to it. */
 #define AWAY_FROM_FOLDS 1e-4
@@ -64,8 +66,8 @@ double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
 {
     const int maugis = nt_plan_contact_form(plan) == NT_FORM_EXACT;
     const nt_maugis *m = &plan->maugis;
-    const double accuracy = plan->demand.relative_accuracy;
-    switch (plan->demand.quantity) {
+    const double accuracy = plan->accuracy;
+    switch (plan->quantity) {
     case NT_QUANTITY_STIFFNESS:
         if (plan->visited_stiffness > 0.0)
             return plan->visited_stiffness;
@@ -75,13 +77,13 @@ double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
     case NT_QUANTITY_FOLDS:
         return fmax(fabs(plan->release_gap), plan->length);
     default:
-        return fmax(scale_of_force(plan, maximum_load), accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
+        return fmax(scale_of_force(plan, maximum_load), accuracy >= STRICTEST ? plan->demand.force_floor / accuracy : 0.0);
     }
 }
 
 double nt_plan_force_scale(const nt_plan *plan, double maximum_load)
 {
-    const int felt = plan->demand.quantity == NT_QUANTITY_FORCE;
+    const int felt = plan->quantity == NT_QUANTITY_FORCE;
     if (nt_plan_contact_form(plan) == NT_FORM_EXACT && plan->visits_contact) {
         const double own = nt_maugis_pull_off_force(&plan->maugis);
         return felt ? fmin(plan->scale, own) : own;
@@ -140,7 +142,7 @@ static nt_law_value other_at(const nt_plan *plan, const rivals *laws, double ind
 
 static double difference(const nt_plan *plan, const rivals *laws, double indentation)
 {
-    const double scale = laws->quantity == plan->demand.quantity ? plan->scale : pull_of(plan);
+    const double scale = laws->quantity == plan->quantity ? plan->scale : pull_of(plan);
     const double truth = nt_plan_pick(laws->truth(plan, indentation), laws->quantity);
     const double other = nt_plan_pick(other_at(plan, laws, indentation), laws->quantity);
     return isnan(other) ? (double)INFINITY : fabs(other - truth) / fmax(fabs(truth), scale); /* it refuses */
@@ -163,7 +165,7 @@ static double distance(const nt_plan *plan, const rivals *laws, double lowest)
 
 double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
 {
-    const rivals laws = {.truth = full_at, .quantity = plan->demand.quantity, .form = form};
+    const rivals laws = {.truth = full_at, .quantity = plan->quantity, .form = form};
     const double begins = nt_plan_away_from_folds(plan) - plan->release_gap;
     return fmax(distance(plan, &laws, -INFINITY), difference(plan, &laws, begins));
 }
@@ -190,7 +192,7 @@ static double curvature_distance(const nt_plan *plan, const rivals *laws)
 
 double nt_plan_curvature_distance(const nt_plan *plan)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     return fmax(curvature_distance(plan, &(rivals){.truth = sharpest_at, .other = full_at, .quantity = quantity}),
                 curvature_distance(plan, &(rivals){.truth = bluntest_at, .other = full_at, .quantity = quantity}));
 }

@@ -49,7 +49,7 @@ double nt_elastic_error(const nt_plan *plan, const nt_elastic_sum *s)
     const double share = share_of(plan, s), scale = plan->scale, ratio = nt_elastic_bluntest(plan);
     if (share == 0.0)
         return 0.0;
-    if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
+    if (plan->quantity == NT_QUANTITY_STIFFNESS)
         return NT_ELASTIC_SLOPE * share * ratio * s->all_k / fmax(ratio * fabs(s->k), scale);
     return share * ratio * s->all_F / fmax(ratio * fabs(s->F), scale);
 }
@@ -116,7 +116,7 @@ static double radius_before_contact(const nt_plan *plan, double gap)
 double nt_plan_press_error(const nt_plan *plan)
 {
     const double u = nt_elastic_under(plan, 1);
-    if (plan->demand.quantity != NT_QUANTITY_STIFFNESS || !(u > 0.0) || plan->source != NT_ADHESION_NONE)
+    if (plan->quantity != NT_QUANTITY_STIFFNESS || !(u > 0.0) || plan->source != NT_ADHESION_NONE)
         return 0.0;
     const double k = nt_plan_contact_eval(plan, nt_plan_contact_form(plan), u).k;
     return fmin(k, plan->maximum_stiffness) * sqrt(nt_elastic_bluntest(plan)) / plan->scale;
@@ -128,12 +128,12 @@ static double error_in_contact(const nt_plan *plan)
     const nt_elastic_sum touching = nt_elastic_sum_at(plan, 0.0);
     const double u = nt_elastic_under(plan, 1), ratio = nt_elastic_bluntest(plan);
     double worst = 0.0;
-    if (plan->demand.quantity == NT_QUANTITY_RADIUS)
+    if (plan->quantity == NT_QUANTITY_RADIUS)
         return radius_at(plan, u);
     for (double d = NEAREST; d < plan->largest_indentation && u > 0.0; d *= DEEPER_BY) {
         const nt_law_value contact = nt_plan_contact_eval(plan, nt_plan_contact_form(plan), d);
         const double lost = fmin(sqrt(ratio) * contact.k * u, NT_ELASTIC_HALF * ratio * touching.all_F);
-        const double error = plan->demand.quantity == NT_QUANTITY_STIFFNESS
+        const double error = plan->quantity == NT_QUANTITY_STIFFNESS
                                  ? NT_ELASTIC_SLOPE * fmin(lost / d, contact.k) / fmax(contact.k, plan->scale)
                                  : lost / fmax(fabs(contact.F + touching.F), plan->scale);
         worst = fmax(worst, error);
@@ -169,9 +169,9 @@ double nt_plan_deform_touch(const nt_plan *plan)
 {
     const nt_deform_table *table = plan->relief.count > 0 ? plan->relief.table[0] : &plan->deformation;
     const int touches = table->count > 0 && plan->source == NT_ADHESION_NONE && !isinf(table->touch);
-    if (touches && plan->relief.count > 0 && plan->demand.quantity == NT_QUANTITY_STIFFNESS)
+    if (touches && plan->relief.count > 0 && plan->quantity == NT_QUANTITY_STIFFNESS)
         return 2.0 * plan->deformation.jump_error; /* where the laws are held, k jumps */
-    if (!touches || plan->demand.quantity != NT_QUANTITY_RADIUS || !(plan->bound.force_error > 0.0))
+    if (!touches || plan->quantity != NT_QUANTITY_RADIUS || !(plan->bound.force_error > 0.0))
         return 0.0;
     const double root = 0.5 * plan->deformation.jump_error / plan->bound.force_error;
     return root * root * plan->contact.radius / (plan->scale * plan->scale) + plan->deformation.jump_error;
@@ -180,7 +180,7 @@ double nt_plan_deform_touch(const nt_plan *plan)
 /* Beside contact there is no radius and, but for a jump, no fold. */
 static double error_of(const nt_plan *plan, double worst)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     if (quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS)
         return worst;
     return isinf(worst) ? worst : 0.0;
@@ -194,7 +194,7 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
     plan->elastic_number = 0.0;
     const double last = fmax(fmax(nearest, outside), NEAREST);
     const double load = DEEPER * scene->range.maximum_load;
-    const int is_radius = plan->demand.quantity == NT_QUANTITY_RADIUS && plan->source == NT_ADHESION_NONE;
+    const int is_radius = plan->quantity == NT_QUANTITY_RADIUS && plan->source == NT_ADHESION_NONE;
     int touches = plan->source == NT_ADHESION_NONE && nearest <= 0.0;
     for (double gap = FARTHEST; gap > last && touches >= 0;) {
         double next = fmax(nt_elastic_nearer(plan, gap), last);
@@ -208,13 +208,13 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
         gap = next;
     }
     worst = error_of(plan, worst);
-    if (touches > 0 && plan->demand.quantity != NT_QUANTITY_FOLDS)
+    if (touches > 0 && plan->quantity != NT_QUANTITY_FOLDS)
         worst = fmax(worst, error_in_contact(plan));
     if (touches < 0 && is_radius)
         worst = fmax(worst, radius_before_contact(plan, reached));
     const int adheres = plan->source != NT_ADHESION_NONE && plan->visits_contact;
     plan->around_error = adheres ? nt_plan_around_error(plan, 1) : 0.0;
-    if (adheres && plan->demand.quantity == NT_QUANTITY_FORCE && isfinite(worst))
+    if (adheres && plan->quantity == NT_QUANTITY_FORCE && isfinite(worst))
         worst = fmax(worst, nt_plan_tail_error(plan));
     return worst;
 }

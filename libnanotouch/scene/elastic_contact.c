@@ -138,7 +138,7 @@ static doubt doubt_of(const nt_plan *plan, double u, double more)
  * of the tail pulls more: as much inside the gap where adhesion takes hold, between that and nothing in a neck. */
 static double off_at(const nt_plan *plan, const doubt *of, double d, double u)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     const int is_force = quantity == NT_QUANTITY_FORCE;
     nt_law_value as = {NAN, NAN, NAN, NAN}, wider = as, narrower = as;
     (void)nt_maugis_eval(&of->as, d, NT_BRANCH_STABLE, &as, NULL);
@@ -158,7 +158,7 @@ static double off_at(const nt_plan *plan, const doubt *of, double d, double u)
  * is told by what is lost over that range. */
 static double error_in_doubt(const nt_plan *plan, const doubt *of, double beside)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     const double inside = quantity == NT_QUANTITY_STIFFNESS ? INSIDE_FOLD * plan->length : 0.0;
     double worst = 0.0;
     for (int i = 0; i <= 2 * DEPTHS; ++i) {
@@ -173,7 +173,7 @@ static double error_in_doubt(const nt_plan *plan, const doubt *of, double beside
  * the tail pulls more, and a part of what laws on the undeformed gap err by. */
 static double error_of_contact(const nt_plan *plan, double u, double more)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     const double moved = shift_by(plan, u, more), beside = NT_ELASTIC_BESIDE * moved + nt_plan_away_from_folds(plan);
     if (u == 0.0 && more == 0.0)
         return 0.0;
@@ -194,7 +194,7 @@ double nt_plan_tail_error(const nt_plan *plan)
 double nt_plan_doubt_share(nt_plan *plan, double error)
 {
     const double pull = 2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion;
-    const int is_felt = plan->demand.quantity != NT_QUANTITY_FOLDS;
+    const int is_felt = plan->quantity != NT_QUANTITY_FOLDS;
     plan->deformation.doubt = plan->deformation.beside = 0.0;
     if (plan->deformation.jumps || plan->deformation.holds || !(nt_plan_deform_share(plan) > 0.0))
         return 0.0;
@@ -215,7 +215,7 @@ double nt_plan_doubt_share(nt_plan *plan, double error)
 
 double nt_plan_around_error(const nt_plan *plan, int tails)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     if (quantity == NT_QUANTITY_FOLDS)
         return shift_of(plan, tails) / plan->scale;
     const double more = tails && quantity != NT_QUANTITY_FORCE ? nt_elastic_more_of_w(plan) : 0.0;

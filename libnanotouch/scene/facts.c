@@ -123,7 +123,7 @@ static double steepest_pull(const nt_plan *plan)
 {
     const double capture = plan->capture_gap, outside = 1.0 + 1e-12;
     const double jump = full_eval(plan, 1, capture).F - full_eval(plan, 0, capture).F;
-    if (fabs(jump) > fmax(plan->demand.relative_accuracy, 1e-6) * plan->pull_off_force)
+    if (fabs(jump) > fmax(plan->accuracy, 1e-6) * plan->pull_off_force)
         return INFINITY;
     /* apart; inside the range of adhesion, and as far into contact; it is steepest just outside the gaps where terms
      * are held */

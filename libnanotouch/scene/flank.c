@@ -29,7 +29,7 @@ static int section_of(const nt_shape *shape, section *out)
 /* Force or stiffness of one law on that tip. */
 static double on_tip(const nt_plan *plan, int term, const section *tip, double gap)
 {
-    const int force = plan->demand.quantity == NT_QUANTITY_FORCE;
+    const int force = plan->quantity == NT_QUANTITY_FORCE;
     const nt_pressure end = nt_plan_term_pressure(plan, term, gap);
     double sum = tip->flat * (force ? end.pressure : -end.slope);
     for (int i = 0; i < POINTS && tip->cone > 0.0; ++i) {
@@ -44,7 +44,7 @@ static double on_tip(const nt_plan *plan, int term, const section *tip, double g
  * says. */
 void nt_plan_warn_flank(nt_plan *plan)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     section tip;
     if ((quantity != NT_QUANTITY_FORCE && quantity != NT_QUANTITY_STIFFNESS) || !section_of(&plan->shape, &tip))
         return;
@@ -58,7 +58,7 @@ void nt_plan_warn_flank(nt_plan *plan)
             worst = fmax(worst, fabs(on_tip(plan, term, &tip, gap) - sphere));
         }
     }
-    const double share = nt_plan_share(plan, worst), demanded = plan->demand.relative_accuracy;
+    const double share = nt_plan_share(plan, worst), demanded = plan->accuracy;
     if (share > demanded)
         nt_plan_add_warning(plan, (nt_plan_warning){"forces before contact, which are those of a sphere of the tip's "
                                                     "radius, differ on this shape by",

@@ -179,9 +179,9 @@ static float at_most(double gap)
     return (double)near > gap ? nextafterf(near, -INFINITY) : near;
 }
 
-static nt_status refuse(nt_problem *problem, const char *why, nt_status status)
+static nt_status refuse(nt_problem *problem, nt_problem_code why, nt_status status)
 {
-    (void)nt_problem_set(problem, why, NT_UNIT_REASON, NAN, NAN, NAN);
+    (void)nt_problem_refuse(problem, (nt_problem){.code = why});
     return status;
 }
 
@@ -201,7 +201,7 @@ static void measure(making *m)
     nt_force_table *t = m->table;
     const int touches = plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF;
     const double load = fabs(truth(m, -plan->largest_indentation).F);
-    t->scale = (float)(plan->demand.quantity == NT_QUANTITY_FORCE ? plan->scale : nt_plan_force_scale(plan, load));
+    t->scale = (float)(plan->quantity == NT_QUANTITY_FORCE ? plan->scale : nt_plan_force_scale(plan, load));
     t->capture_gap = touches ? at_most(plan->capture_gap) : -INFINITY;
     t->release_gap = touches ? at_most(fmax(plan->capture_gap, plan->release_gap)) : -INFINITY;
     t->farthest = (float)nt_plan_cutoff_gap(plan, 0.5 * m->accuracy * (double)t->scale);
@@ -232,25 +232,25 @@ nt_status nt_force_table_make(nt_force_table *table, nt_force_piece *pieces, int
         return NT_E_ARGUMENT;
     nt_force_table made = {.pieces = pieces};
     making m = {&made, pieces, capacity, 0, plan, 1, FINEST, {0.0}, 0, 0};
-    if (plan->demand.quantity == NT_QUANTITY_FORCE)
-        m.accuracy = fmax(SHARE * plan->demand.relative_accuracy, FINEST);
+    if (plan->quantity == NT_QUANTITY_FORCE)
+        m.accuracy = fmax(SHARE * plan->accuracy, FINEST);
     if (plan->surface)
-        return refuse(problem, "a plan over a surface has a force of each place, a table that of a flat", NT_E_RANGE);
+        return refuse(problem, NT_PROBLEM_FORCE_TABLE_SURFACE, NT_E_RANGE);
     if (plan->dents)
-        return refuse(problem, "a sample that keeps dents has a force of all that was pressed before", NT_E_RANGE);
+        return refuse(problem, NT_PROBLEM_FORCE_TABLE_DENTS, NT_E_RANGE);
     measure(&m);
     const float deepest = (float)-plan->largest_indentation;
     const double largest = fabs(truth(&m, (double)deepest).F);
     if (!((double)made.scale >= SMALLEST && (double)made.scale <= LARGEST && largest <= LARGEST))
-        return refuse(problem, "a force that single precision cannot hold", NT_E_RANGE);
+        return refuse(problem, NT_PROBLEM_FORCE_TABLE_SINGLE, NT_E_RANGE);
     if (!(made.farthest <= FAR))
-        return refuse(problem, "a force that is felt beyond 1 mm", NT_E_RANGE);
+        return refuse(problem, NT_PROBLEM_FORCE_TABLE_FAR, NT_E_RANGE);
     find_specials(&m);
     const nt_status status = cut_table(&m, deepest);
     if (status != NT_OK)
-        return refuse(problem, "it needs more pieces than there is place for", status);
+        return refuse(problem, NT_PROBLEM_FORCE_TABLE_PIECES, status);
     if (m.has_holes)
-        return refuse(problem, "a plan without a force at some gaps of its range", NT_E_NO_SOLUTION);
+        return refuse(problem, NT_PROBLEM_FORCE_TABLE_HOLES, NT_E_NO_SOLUTION);
     *table = made;
     return NT_OK;
 }

@@ -80,21 +80,35 @@ double nt_plan_tail_share(const nt_plan *plan)
     return share;
 }
 
+int nt_plan_strongest_tail(const nt_plan *plan)
+{
+    int strongest = NT_PLAN_CONTACT;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (share_of(plan, term) > share_of(plan, strongest))
+            strongest = term;
+    return strongest;
+}
+
+nt_scene nt_plan_scene_without_tails(const nt_scene *scene)
+{
+    nt_scene without = *scene;
+    for (int term = 0; term < NT_PLAN_TERMS; ++term)
+        if (nt_term_rows[term]->words.tail)
+            nt_field_set(nt_scene_field(nt_term_rows[term]->words.tail), &without, 0.0);
+    return without;
+}
+
 /* The tails alone pull `share`, more than all the adhesion there is: names what scales the strongest. */
 static nt_status refuse(const nt_plan *plan, const nt_scene *scene, double share, nt_problem *problem)
 {
-    int count = 0, strongest = 0;
-    const nt_field *fields = nt_scene_fields(&count);
-    for (int term = 0; term < NT_PLAN_TERMS; ++term)
-        if (share_of(plan, term) > share_of(plan, strongest))
-            strongest = term;
+    const int strongest = nt_plan_strongest_tail(plan);
     const double own = share_of(plan, strongest), left = plan->contact.work_of_adhesion - (share - own);
-    for (int i = 0; i < count; ++i)
-        if (problem && strcmp(fields[i].name, nt_term_rows[strongest]->words.tail) == 0) {
-            const double value = nt_field_get(&fields[i], scene);
-            *problem = (nt_problem){fields[i].name, fields[i].unit, value, 0.0, value * fmax(left, 0.0) / own};
-        }
-    return NT_E_RANGE;
+    const nt_field *field = nt_scene_field(nt_term_rows[strongest]->words.tail);
+    const double value = nt_field_get(field, scene);
+    nt_problem tail = nt_problem_of(field->name, field->unit, value, 0.0, value * fmax(left, 0.0) / own);
+    tail.code = NT_PROBLEM_TAIL;
+    tail.cause = nt_term_rows[strongest]->words.title;
+    return nt_problem_refuse(problem, tail);
 }
 
 nt_status nt_plan_tabulate(nt_plan *plan, const nt_scene *scene, nt_problem *problem)

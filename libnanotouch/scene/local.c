@@ -64,7 +64,7 @@ int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options)
         return 0;
     double lambda[2];
     lambdas_of(plan, lambda);
-    const double accuracy = plan->demand.relative_accuracy, least = plan->least.radius / plan->contact.radius;
+    const double accuracy = plan->accuracy, least = plan->least.radius / plan->contact.radius;
     /* reduced by (pi^2 w^2 R/K^2)^(1/3) of the sharpest place, where the same load goes deeper */
     const double deepest = plan->largest_indentation / plan->maugis.indentation_scale / cube_root(least * least);
     const double first = fmin(fmax(floor(log10(lambda[0] / 1.5)), -15.0), 14.0);

@@ -48,18 +48,18 @@ double nt_plan_table_error(const nt_plan *plan, nt_quantity quantity)
     return error;
 }
 
-nt_problem nt_plan_reason(const nt_plan *plan, const char *deforms, double error)
+nt_problem nt_plan_reason(const nt_plan *plan, const char *law, double error)
 {
-    static const char tabled[] = "terms: the table of a law of its own errs by too much beside what is felt (a larger "
-                                 "range.maximum_load, or a law that is weaker where it is not visited)";
-    const double table = nt_plan_share(plan, nt_plan_table_error(plan, plan->demand.quantity));
-    return (nt_problem){table > error ? tabled : deforms, NT_UNIT_ERROR, fmax(table, error), 0.0,
-                        plan->demand.relative_accuracy};
+    const double table = nt_plan_share(plan, nt_plan_table_error(plan, plan->quantity));
+    nt_problem reason = nt_demand_accuracy(plan->accuracy, INFINITY);
+    reason.code = table > error ? NT_PROBLEM_TABLE : NT_PROBLEM_DEFORMS;
+    reason.cause = law;
+    return reason;
 }
 
 static double difference(const nt_plan *plan, int term, nt_form form, double gap)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     return fabs(nt_plan_pick(nt_plan_law_eval(plan, term, form, gap), quantity) -
                 nt_plan_pick(nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap), quantity));
 }
@@ -68,7 +68,7 @@ static double difference(const nt_plan *plan, int term, nt_form form, double gap
  * hold, where both are steepest. */
 static double form_distance(const nt_plan *plan, int term, nt_form form, double nearest)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     if (form == nt_plan_full_form(plan, term) || quantity == NT_QUANTITY_RADIUS || quantity == NT_QUANTITY_FOLDS)
         return 0.0;
     const double outside = fmax(nearest, nt_plan_hold_gap(plan, term) * (1.0 + 1e-12));
@@ -82,7 +82,7 @@ static double form_distance(const nt_plan *plan, int term, nt_form form, double 
 static void offer_law(const nt_plan *plan, int term, double nearest, nt_plan_options *options)
 {
     const double blunter = nt_plan_largest_ratio(plan);
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     const nt_form full = nt_plan_full_form(plan, term);
     const nt_term_words *words = &nt_term_rows[term]->words;
     const double limit = nt_plan_law_limit(plan, term, nearest, quantity);
@@ -103,7 +103,7 @@ static double lost_bits(const nt_plan *plan, double nearest, double beside)
 {
     const double ratio = nt_plan_largest_ratio(plan);
     double worst = 0.0;
-    if (plan->demand.quantity != NT_QUANTITY_FORCE)
+    if (plan->quantity != NT_QUANTITY_FORCE)
         return LAST_BITS * nt_plan_share(plan, ratio * beside);
     for (double gap = nearest; gap < 1e-1; gap = fmax(1.1 * gap, 1e-13)) {
         double all = 0.0, sum = 0.0;
@@ -150,7 +150,7 @@ static void burden_contact(const nt_plan *plan, nt_plan_options *options, double
 void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *options)
 {
     static const nt_plan_options none = {0};
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     const double nearest = fmax(scene->range.minimum_gap, 0.0);
     double beside = 0.0;
     *options = none;

@@ -3,8 +3,7 @@
 #ifndef NANOTOUCH_SCENE_PARTS_H
 #define NANOTOUCH_SCENE_PARTS_H
 
-#include <string.h>
-
+#include "core/problem.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 
@@ -134,6 +133,9 @@ nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, doubl
 nt_law_value nt_plan_beside_at(const nt_plan *plan, double gap);
 /* What is taken out of w, because a tail pulls it already (E5b) [J/m^2]. */
 double nt_plan_tail_share(const nt_plan *plan);
+/* The law whose tail takes most of w; NT_PLAN_CONTACT: none has one. */
+int nt_plan_strongest_tail(const nt_plan *plan);
+nt_scene nt_plan_scene_without_tails(const nt_scene *scene);
 /* The largest |F| or |k| of a term at all gaps from `gap` on; signs that could cancel are not trusted. */
 double nt_plan_law_limit(const nt_plan *plan, int term, double gap, nt_quantity quantity);
 /* The gap below which a term keeps its value [m]; 0 for contact. */
@@ -200,8 +202,8 @@ double nt_plan_cost_of_place(const nt_plan *plan, nt_form form, int which);
 double nt_plan_share(const nt_plan *plan, double error);
 /* What the tables of laws of one's own err by [N or N/m]. */
 double nt_plan_table_error(const nt_plan *plan, nt_quantity quantity);
-/* A refusal that names no accuracy: because of its deformation, or of such a table if that errs by more. */
-nt_problem nt_plan_reason(const nt_plan *plan, const char *deforms, double error);
+/* A refusal that names no accuracy: because the sample deforms under a law, or of such a table if that errs by more. */
+nt_problem nt_plan_reason(const nt_plan *plan, const char *law, double error);
 
 /* elastic.c: what the terms beside contact err by where they add on the undeformed gap, as a share of the demand;
  * also the elastic number, and where a sample that is pulled jumps: 0.56 of a pressure as 1/g^3, 0.81 of an
@@ -238,9 +240,12 @@ typedef struct nt_deform_end {
 typedef struct nt_deform_tried {
     nt_deform_end end[NT_DEFORM_TRIED];
     int count;
+    int *meshes; /* that all tables together may still take, which is counted down; NULL: as many as they take */
 } nt_deform_tried;
-/* The plan of a scene whose sample deforms under all terms together. `tried`: of this scene. */
-nt_status nt_plan_deform(nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried, nt_problem *problem);
+/* The plan of a scene whose sample deforms under all terms together, within an accuracy (0: that of everything exact),
+ * made from one that has facts and no choice yet. `tried`: of this scene. */
+nt_status nt_plan_deform(const nt_plan *plan, const nt_scene *scene, double accuracy, nt_deform_tried *tried,
+                         nt_plan *made, nt_problem *problem);
 /* deformation/adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share
  * of the demand. NT_E_RANGE: contact and table do not fit. */
 nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
@@ -263,18 +268,31 @@ double nt_plan_capture_gap(const nt_plan *plan, const nt_place *place);
 /* plan.c: begun and decided, without the facts of a plan that is made. */
 nt_status nt_plan_try(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, nt_problem *problem);
 /* refusal.c: what can be demanded of a sample for which no table was made; NT_E_RANGE. */
-nt_status nt_plan_refuse(const nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
+nt_status nt_plan_refuse(const nt_plan *plan, const nt_plan_options *options, const nt_problem *reason,
+                         nt_problem *problem);
 /* And what is said of a plan that was refused for a reason: an accuracy that is planned, near the smallest, or why
  * there is none. */
-#define NT_DEMANDED "demand.relative_accuracy"
-nt_problem nt_plan_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, const nt_problem *reason);
-static inline int nt_problem_names(const nt_problem *problem, const char *field)
-{
-    return problem->field && strcmp(problem->field, field) == 0;
-}
+nt_remedy nt_plan_remedy(const nt_plan_inputs *inputs);
+nt_problem nt_plan_word(const nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried,
+                        const nt_problem *reason);
 
-/* choice.c: the cheapest of all combinations that keeps the demand. */
-nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
+/* demand.c: what the accuracy or the budget would have to be. */
+nt_problem nt_demand_accuracy(double demanded, double least);
+nt_problem nt_demand_budget(double budget, double cost);
+/* scene.c: a field by its name; NULL: there is none. */
+const nt_field *nt_scene_field(const char *name);
+
+/* choice.c: one form of each term; the cheapest that keeps an accuracy (0: the fullest) and a budget (0: none). */
+typedef struct nt_plan_choice {
+    int index[NT_PLAN_TERMS];
+    double error, cost;
+} nt_plan_choice;
+nt_status nt_plan_choose(const nt_plan_options *options, double accuracy, double budget, nt_plan_choice *choice,
+                         nt_problem *problem);
+/* Whether it leaves out all that is beside contact. */
+int nt_plan_is_alone(const nt_plan_options *options, const nt_plan_choice *choice);
+/* The plan has it. */
+void nt_plan_take(nt_plan *plan, const nt_plan_options *options, const nt_plan_choice *choice);
 
 /* plastic.c: a sample that keeps dents, if the scene wants one. NT_E_RANGE with what does not go with it. */
 nt_status nt_plan_dents_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);

@@ -2,8 +2,8 @@
  * From a scene and a demand to what has to be computed: the steps of parts.h in their order. */
 #include "nanotouch/plan.h"
 
+#include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
@@ -59,7 +59,7 @@ static void finish(nt_plan *plan, double maximum_load)
     if (plan->deformation.count > 0 && plan->source != NT_ADHESION_NONE)
         plan->fold_distance = fmax(plan->fold_distance, plan->deformation.beside);
     if (plan->deformation.count > 0 && plan->deformation.jumps &&
-        plan->demand.quantity == NT_QUANTITY_STIFFNESS) /* k ~ 1/sqrt */
+        plan->quantity == NT_QUANTITY_STIFFNESS) /* k ~ 1/sqrt */
         plan->fold_distance += plan->deformation.jump_error / plan->bound.force_error;
     if (form == NT_FORM_SHAPE && plan->source != NT_ADHESION_NONE) { /* adhesion that cannot be felt: no folds */
         plan->bound.fold_shift = fmax(plan->release_gap, plan->capture_gap);
@@ -77,12 +77,13 @@ static nt_status check_shape(const nt_plan *plan, const nt_scene *scene, nt_prob
     if (!plan->properties || nt_plan_contact_form(plan) != NT_FORM_JKR)
         return NT_OK;
     if (problem)
-        *problem = (nt_problem){"tip.shape (adhesion on a surface with properties)", shape->unit, scene->tip.shape,
-                                NT_SHAPE_PARABOLOID, NT_SHAPE_SPHERE};
+        *problem =
+            nt_problem_coded(NT_PROBLEM_SHAPE_OF_PROPERTIES, nt_problem_of(shape->name, shape->unit, scene->tip.shape,
+                                                                           NT_SHAPE_PARABOLOID, NT_SHAPE_SPHERE));
     return NT_E_RANGE;
 }
 
-nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+static nt_status begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
     static const nt_plan empty = {.surface = NULL};
     const nt_demand demand = inputs->demand ? *inputs->demand : nt_demand_defaults();
@@ -91,6 +92,8 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
         return status;
     *plan = empty;
     plan->demand = demand;
+    plan->quantity = demand.quantity;
+    plan->accuracy = demand.bound == NT_BOUND_EXACT ? 0.0 : fmax(demand.relative_accuracy, DBL_MIN);
     plan->surface = inputs->surface;
     plan->radii = inputs->radii;
     plan->properties = inputs->properties;
@@ -106,138 +109,153 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
     return status == NT_OK ? check_shape(plan, &scene, problem) : status;
 }
 
-/* Nothing but a contact of its own is computed, and what is not cannot be felt. */
-static int is_alone(const nt_plan *plan)
+/* Of what is computed where only contact is, and what is not cannot be felt. */
+static int is_of_contact(const nt_plan *plan)
 {
-    const nt_quantity quantity = plan->demand.quantity;
-    const int felt = quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS;
-    return felt && plan->on_count == 0 && plan->source == NT_ADHESION_NONE;
+    const int felt = plan->quantity == NT_QUANTITY_FORCE || plan->quantity == NT_QUANTITY_STIFFNESS;
+    return felt && plan->source == NT_ADHESION_NONE;
 }
 
-/* Laws that are not computed press the surface away all the same, so that a contact alone is too stiff. 0: it keeps to
- * the demand, of which this is a part from here on. */
-static int add_press(nt_plan *plan)
+/* What the terms err by on the undeformed gap. */
+static double rigid_error(const nt_plan *plan)
 {
-    const double error = plan->bound.force_error + nt_plan_press_error(plan);
-    if (error > plan->demand.relative_accuracy)
-        return 1;
-    plan->bound.force_error = error;
-    return 0;
+    return fmax(plan->rigid_error, plan->around_error);
 }
 
-/* With the error of terms that add on the undeformed gap: inside the demand, or beside it. */
-static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, int inside, nt_problem *problem)
+/* Takes the cheapest forms of laws that add on the undeformed gap, which errs by `more` beside them: inside an accuracy
+ * (0: in full), or beside it. Laws that are not computed press the surface away all the same, so that a contact alone
+ * is too stiff. */
+static nt_status take_rigid(nt_plan *plan, const nt_plan_options *options, double accuracy, double more,
+                            nt_problem *problem)
 {
-    const double demanded = plan->demand.relative_accuracy, rigid = fmax(plan->rigid_error, plan->around_error);
-    if (inside && demanded > 0.0 && rigid >= demanded)
-        return NT_E_RANGE;
-    plan->demand.relative_accuracy = inside && demanded > 0.0 ? demanded - rigid : demanded;
-    const nt_status status = nt_plan_choose(plan, options, problem);
-    plan->demand.relative_accuracy = demanded;
+    nt_plan_choice choice;
+    const nt_status status = nt_plan_choose(options, accuracy, plan->demand.budget, &choice, problem);
     if (status != NT_OK)
         return status;
-    if (is_alone(plan) && add_press(plan) == 0)
-        return NT_OK;
-    plan->bound.force_error += rigid; /* a tail that was left out, too, pulls by so much more */
+    const double pressed = choice.error + nt_plan_press_error(plan);
+    nt_plan_take(plan, options, &choice);
+    plan->bound.force_error += more; /* of a tail that was left out, too */
+    if (is_of_contact(plan) && nt_plan_is_alone(options, &choice) && pressed <= plan->accuracy)
+        plan->bound.force_error = pressed;
     return NT_OK;
 }
 
 /* What no table was made for adds on the undeformed gap, with an error of force or stiffness beyond the demand that is
  * part of the bound and that the plan warns of: over a surface with properties; with adhesion, if the sample is stiff;
- * without, where something pulls. A demand of 0 takes whatever that errs by, with no bound where the surface jumps. */
+ * without, where something pulls. Who asks for everything exact, or for any bound, takes whatever that errs by, with no
+ * bound where the surface jumps. */
 static int is_left(const nt_plan *plan, double maximum_load)
 {
-    const double scale = nt_plan_force_scale(plan, maximum_load);
-    if (!(plan->demand.relative_accuracy > 0.0))
+    const double scale = nt_plan_force_scale(plan, maximum_load), errs = rigid_error(plan);
+    if (plan->demand.bound != NT_BOUND_KEPT)
         return 1;
-    const double errs = fmax(plan->rigid_error, plan->around_error);
     if (isinf(errs))
         return 0;
     if (plan->source == NT_ADHESION_NONE && !plan->properties)
         return plan->pull_off_force > UNASKED * scale;
     if (plan->properties || errs > WORST)
         return errs <= WORST;
-    return plan->elastic_number <= STIFF || plan->rigid_error <= plan->demand.relative_accuracy;
+    return plan->elastic_number <= STIFF || plan->rigid_error <= plan->accuracy;
 }
 
 /* Where no table keeps to the demand: the finest that does better than terms on the undeformed gap. What is the same
  * for every demand is tried in the same order, so that a stricter demand has no looser bound. */
-static nt_status deform_at_best(nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried)
+static nt_status deform_at_best(const nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried, nt_plan *made)
 {
-    const double demanded = plan->demand.relative_accuracy, errs = fmax(plan->rigid_error, plan->around_error);
     nt_problem least = {0};
-    if (!(demanded > 0.0) || plan->properties)
-        return NT_E_RANGE;
-    plan->demand.relative_accuracy = STRICTEST;
-    nt_status status = nt_plan_deform(plan, scene, tried, &least);
-    double wanted = nt_problem_names(&least, NT_DEMANDED) ? least.minimum : (double)INFINITY;
-    for (int i = 0; i < TRIES && status != NT_OK && wanted < errs; ++i) {
-        plan->demand.relative_accuracy = wanted;
-        status = nt_plan_deform(plan, scene, tried, NULL);
+    nt_status status = nt_plan_deform(plan, scene, STRICTEST, tried, made, &least);
+    double wanted = least.code == NT_PROBLEM_ACCURACY ? least.minimum : (double)INFINITY;
+    for (int i = 0; i < TRIES && status != NT_OK && wanted < rigid_error(plan); ++i) {
+        status = nt_plan_deform(plan, scene, wanted, tried, made, NULL);
         wanted *= COARSER;
     }
-    plan->demand.relative_accuracy = demanded;
     return status;
 }
 
-/* As it was before a sample was to deform. */
-static nt_status undeform(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, nt_problem *problem)
-{
-    const nt_status status = nt_plan_adhere(plan, scene, problem);
-    nt_plan_options_of(plan, scene, options);
-    return status;
-}
-
-/* The cheapest plan whose terms add on the undeformed gap, with what that errs by in its bound; if it errs by too much,
- * the sample deforms. A demand of 0 asks for every law in full. */
+/* The candidates, from facts to a choice: the cheapest forms whose laws add on the undeformed gap, with what that errs
+ * by inside the demand; a sample that deforms, within the demand; and where neither keeps it, what errs by least. */
 static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried, nt_problem *problem)
 {
-    const int adheres = plan->source != NT_ADHESION_NONE;
     nt_plan_options options;
-    nt_plan_options_of(plan, scene, &options);
-    const double demanded = plan->demand.relative_accuracy;
-    nt_status status = nt_plan_choose(plan, &options, problem);
-    plan->rigid_error = nt_plan_rigid_error(plan, scene);
-    const int alone = status == NT_OK && is_alone(plan) && add_press(plan) == 0;
-    if ((plan->rigid_error == 0.0 && plan->around_error == 0.0) || alone)
-        return status;
-    const double errs = fmax(plan->rigid_error, plan->around_error);
-    if ((demanded > 0.0 || errs <= UNASKED) && choose_rigid(plan, &options, 1, NULL) == NT_OK)
-        return NT_OK;
+    nt_plan made;
     nt_problem reason = {0};
-    if (!plan->properties && nt_plan_deform(plan, scene, tried, &reason) == NT_OK)
-        return NT_OK;
-    if (problem)
-        *problem = reason;
-    status = adheres ? undeform(plan, scene, &options, problem) : NT_OK;
-    if (!is_left(plan, scene->range.maximum_load))
-        return nt_plan_refuse(plan, &options, problem);
-    if (status == NT_OK)
-        status = choose_rigid(plan, &options, 0, problem); /* a demand or a budget that nothing keeps is refused */
-    if (status != NT_OK || deform_at_best(plan, scene, tried) == NT_OK)
+    const double demanded = plan->accuracy;
+    nt_plan_options_of(plan, scene, &options);
+    plan->rigid_error = nt_plan_rigid_error(plan, scene);
+    const double errs = rigid_error(plan);
+    nt_status status = take_rigid(plan, &options, demanded, errs, problem);
+    if (errs == 0.0 || (status == NT_OK && plan->bound.force_error <= demanded))
         return status;
-    status = adheres ? undeform(plan, scene, &options, problem) : NT_OK;
-    return status == NT_OK ? choose_rigid(plan, &options, 0, problem) : status;
+    if (demanded > errs || (!(demanded > 0.0) && errs <= UNASKED))
+        status = take_rigid(plan, &options, fmax(demanded - errs, 0.0), errs, NULL);
+    else
+        status = NT_E_RANGE;
+    if (status == NT_OK)
+        return status;
+    if (plan->properties || nt_plan_deform(plan, scene, demanded, tried, &made, &reason) != NT_OK) {
+        if (!is_left(plan, scene->range.maximum_load))
+            return nt_plan_refuse(plan, &options, &reason, problem);
+        const double within = plan->demand.bound == NT_BOUND_KEPT ? demanded : 0.0;
+        status =
+            take_rigid(plan, &options, within, errs, problem); /* a demand or budget that nothing keeps is refused */
+        const int is_exact = plan->demand.bound == NT_BOUND_EXACT && errs <= WORST;
+        if (status != NT_OK || plan->properties || is_exact || deform_at_best(plan, scene, tried, &made) != NT_OK)
+            return status;
+    }
+    nt_plan_copy(plan, &made);
+    return NT_OK;
+}
+
+/* That a plan was begun with. */
+static nt_scene scene_of(const nt_plan *plan, const nt_plan_inputs *inputs)
+{
+    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
+    return plan->drops_tails ? nt_plan_scene_without_tails(&scene) : scene;
 }
 
 /* From a plan as it was begun. */
 static nt_status decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, nt_problem *problem)
 {
-    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
+    const nt_scene scene = scene_of(plan, inputs);
     plan->bank = inputs->bank;
     return choose(plan, &scene, tried, problem);
 }
 
+/* Where no bound is asked for: an adhesion that its own tail exceeds is taken without that tail. */
+static nt_status begin_without_tail(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+{
+    nt_plan_inputs without = *inputs;
+    const nt_scene scene = nt_plan_scene_without_tails(inputs->scene);
+    without.scene = &scene;
+    const nt_status status = begin(plan, &without, problem);
+    plan->drops_tails = 1;
+    return status;
+}
+
 nt_status nt_plan_try(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, nt_problem *problem)
 {
-    const nt_status status = nt_plan_begin(plan, inputs, problem);
+    const nt_status status = begin(plan, inputs, problem);
     return status == NT_OK ? decide(plan, inputs, tried, problem) : status;
+}
+
+nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+{
+    nt_problem reason = {0};
+    const nt_status status = begin(plan, inputs, &reason);
+    if (reason.code == NT_PROBLEM_TAIL && inputs->demand && inputs->demand->bound == NT_BOUND_ANY)
+        return begin_without_tail(plan, inputs, problem);
+    if (status == NT_OK || !problem)
+        return status;
+    *problem = reason;
+    if (reason.code == NT_PROBLEM_TAIL)
+        problem->remedy = nt_plan_remedy(inputs);
+    return status;
 }
 
 nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
     nt_problem reason = {0};
-    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
+    const nt_scene scene = scene_of(plan, inputs);
     nt_deform_tried tried = {.count = 0};
     nt_status status = decide(plan, inputs, &tried, &reason);
     if (status != NT_OK) {
@@ -253,6 +271,8 @@ nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem
     if (status != NT_OK)
         return status;
     finish(plan, scene.range.maximum_load);
+    if (plan->drops_tails)
+        plan->bound.force_error = INFINITY;
     nt_plan_warn(plan, &scene);
     nt_plan_warn_distance(plan, inputs->scene, &scene);
     return NT_OK;

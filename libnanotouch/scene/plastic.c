@@ -76,11 +76,9 @@ static double load_at(const nt_plan *plan, double pressure)
     return at(plan, low).F;
 }
 
-static nt_status refuse_dents(nt_problem *problem, nt_problem reason)
+static nt_status refuse(nt_problem *problem, nt_problem_code code, nt_problem range)
 {
-    if (problem)
-        *problem = reason;
-    return NT_E_RANGE;
+    return nt_problem_refuse(problem, nt_problem_coded(code, range));
 }
 
 /* Alone, a round tip on one material everywhere: what the law of dents knows (plasticity.h). */
@@ -91,19 +89,15 @@ static nt_status check_dents(const nt_plan *plan, const nt_scene *scene, nt_prob
     const nt_first_loading most = nt_indentation_first(&plan->indentation, largest / SQRT2);
     const double load = scene->range.maximum_load;
     if (!(scene->sample.yield_strength > 0.0))
-        return refuse_dents(problem, (nt_problem){"sample.yield_strength (of a sample that keeps dents)", "Pa",
-                                                  scene->sample.yield_strength, 1.0, 1e12});
+        return refuse(problem, NT_PROBLEM_DENTS_STRENGTH,
+                      nt_problem_of("sample.yield_strength", "Pa", scene->sample.yield_strength, 1.0, 1e12));
     if (plan->source != NT_ADHESION_NONE || plan->on_count > 0 || plan->deformation.count > 0)
-        return refuse_dents(problem, (nt_problem){"sample.dents (beside adhesion or other forces than contact, which a "
-                                                  "sample that keeps dents does not know)",
-                                                  "no|yes", 1.0, 0.0, 0.0});
+        return refuse(problem, NT_PROBLEM_DENTS_BESIDE, nt_problem_of("sample.dents", "no|yes", 1.0, 0.0, 0.0));
     if (plan->properties || scene->sample.thickness > 0.0 || (kind != NT_SHAPE_PARABOLOID && kind != NT_SHAPE_SPHERE))
-        return refuse_dents(problem, (nt_problem){"sample.dents (of a layer, a map of properties, or a tip that is not "
-                                                  "round)",
-                                                  "no|yes", 1.0, 0.0, 0.0});
+        return refuse(problem, NT_PROBLEM_DENTS_SHAPE, nt_problem_of("sample.dents", "no|yes", 1.0, 0.0, 0.0));
     if (load > most.force)
-        return refuse_dents(problem, (nt_problem){"range.maximum_load (a groove wider than half of the tip)", "N", load,
-                                                  0.0, most.force});
+        return refuse(problem, NT_PROBLEM_DENTS_GROOVE,
+                      nt_problem_of("range.maximum_load", "N", load, 0.0, most.force));
     return NT_OK;
 }
 
@@ -127,21 +121,15 @@ nt_status nt_plan_dents_of(nt_plan *plan, const nt_scene *scene, nt_problem *pro
 
 nt_status nt_plan_check_plastic(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
-    static const char *const reasons[] = {
-        "range.maximum_load (mean pressure above 3 times the yield strength of the sample, where no elastic law holds)",
-        "range.maximum_load (mean pressure above 3 times the yield strength of the tip, where no elastic law holds)"};
-    int is_tip = 0, count = 0;
+    int is_tip = 0;
     const double limit = PLASTIC * weaker(scene, &is_tip);
     if (plan->dents || plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF || !(limit > 0.0) ||
         !(largest_mean(plan, scene) > limit))
         return NT_OK;
-    const nt_field *field = nt_scene_fields(&count);
-    while (strcmp(field->name, "range.maximum_load") != 0)
-        ++field;
-    if (problem)
-        *problem = (nt_problem){reasons[is_tip], field->unit, scene->range.maximum_load, field->minimum,
-                                fmax(load_at(plan, limit), field->minimum)};
-    return NT_E_RANGE;
+    const nt_field *field = nt_scene_field("range.maximum_load");
+    return refuse(problem, is_tip ? NT_PROBLEM_PLASTIC_TIP : NT_PROBLEM_PLASTIC_SAMPLE,
+                  nt_problem_of(field->name, field->unit, scene->range.maximum_load, field->minimum,
+                                fmax(load_at(plan, limit), field->minimum)));
 }
 
 void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene)

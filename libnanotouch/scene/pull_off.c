@@ -57,16 +57,13 @@ static double extreme(const sought *in, int largest)
 /* What can be measured goes from or up to `limit`; to its other end from there. */
 static nt_status refuse(const sought *in, double limit, nt_problem *problem)
 {
-    int count = 0;
-    const nt_field *field = nt_scene_fields(&count);
-    while (strcmp(field->name, "adhesion.pull_off_force") != 0)
-        ++field;
+    const nt_field *field = nt_scene_field("adhesion.pull_off_force");
     const double measured = in->measured;
     const int less = measured < limit;
     if (problem) {
         const double other = extreme(in, less), least = less ? limit : other, most = less ? other : limit;
-        *problem = (nt_problem){field->name, field->unit, measured, fmax(least * (1.0 + MET), field->minimum),
-                                fmin(most * (1.0 - MET), field->maximum)};
+        *problem = nt_problem_of(field->name, field->unit, measured, fmax(least * (1.0 + MET), field->minimum),
+                                 fmin(most * (1.0 - MET), field->maximum));
     }
     return NT_E_RANGE;
 }

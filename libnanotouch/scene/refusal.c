@@ -1,29 +1,34 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a plan says that is refused: an accuracy, or a gap, of which there is a plan, or the law for which there is
- * none.
- */
+ * What is said of a demand that no plan keeps: the accuracy that can be kept, or else what stands in the way, and one
+ * change with which there is a plan. Both are tried here before they are named. */
 #include <math.h>
-#include <string.h>
+#include <stddef.h>
 
 #include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
 
 #define NEAR 1.1             /* what is named over the smallest accuracy of which there is a plan, at most */
 #define NEAR_OVER_RELIEF 2.0 /* the same where each plan makes the tables of many radii */
-#define FARTHER 1.25         /* ratio of gaps that are tried, where a sample jumps */
-#define FARTHEST 1e-2        /* [m] */
 #define STRICTEST 1e-12
-enum { SAID = 3, FARTHER_TRIES = 24 };
+#define FARTHER 1.25 /* ratio of gaps that are tried, where a sample jumps */
+enum {
+    SAID = 3,
+    FARTHER_TRIES = 24,
+    MESHES = 600,
+    MESHES_OF_ALL = 1500
+}; /* of one plan that is tried; of all changes */
 
-/* The law that presses most on a sample that does not keep still. */
-static int strongest(const nt_plan *plan)
+/* The law that presses most on a sample that does not keep still, or whose pull it jumps to. */
+static int strongest(const nt_plan *plan, int pulls)
 {
     int found = NT_PLAN_CONTACT;
     double most = 0.0;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         const nt_term_row *row = nt_term_rows[term];
         const int of_contact = plan->around_error > plan->rigid_error && row->words.tail != NULL;
-        const double force = row->pressure && !of_contact ? plan->terms[term].force : 0.0;
+        const double at_hold = nt_plan_hold_gap(plan, term) * (1.0 + 1e-12);
+        const int wrong_way = pulls && nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), at_hold).F >= 0.0;
+        const double force = row->pressure && !of_contact && !wrong_way ? plan->terms[term].force : 0.0;
         if (force > most) {
             found = term;
             most = force;
@@ -32,137 +37,208 @@ static int strongest(const nt_plan *plan)
     return found;
 }
 
-/* What is said of that law. */
-static nt_term_refused words_of(const nt_plan *plan)
+static const char *name_of(int term)
 {
-    static const nt_term_refused nameless = NT_TERM_REFUSED("the forces before contact");
-    const nt_term_refused words = nt_term_rows[strongest(plan)]->refused;
-    return words.deforms ? words : nameless;
+    return term == NT_PLAN_CONTACT ? "the forces before contact" : nt_term_rows[term]->words.title;
 }
 
-/* By the name of that law. */
-static nt_problem by_law(const nt_plan *plan, double error)
+/* Infinite beyond a jump: then it is a pull. */
+static double rigid_error(const nt_plan *plan)
 {
-    return nt_plan_reason(plan, words_of(plan).deforms, error);
+    return fmax(plan->rigid_error, plan->around_error);
 }
 
-/* What can be demanded of a sample for which no table was made: the terms on the undeformed gap, where they are better.
- */
-nt_status nt_plan_refuse(const nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
+/* Because of a law. */
+static nt_problem by_law(const nt_plan *plan)
 {
-    double least = fmax(plan->rigid_error, plan->around_error) * (1.0 + 1e-9);
-    int count = 0;
-    const nt_field *field = nt_demand_fields(&count);          /* the first is the accuracy */
-    if (problem && nt_problem_names(problem, "demand.budget")) /* a dearer table would do */
-        return NT_E_RANGE;
+    const double errs = rigid_error(plan);
+    return nt_plan_reason(plan, name_of(strongest(plan, isinf(errs))), errs);
+}
+
+/* What no table was made for: its terms on the undeformed gap, where they are better than what the table could do. */
+nt_status nt_plan_refuse(const nt_plan *plan, const nt_plan_options *options, const nt_problem *reason,
+                         nt_problem *problem)
+{
+    double least = rigid_error(plan) * (1.0 + 1e-9);
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         least += options->option[term][options->count[term] - 1].error;
-    const int finer = problem && nt_problem_names(problem, NT_DEMANDED) &&
-                      problem->minimum < field->maximum; /* a table of another demand would do */
-    if (problem && !finer && !(least < field->maximum)) {
-        if (!nt_problem_names(problem, NT_DEFORM_SPREAD))
-            *problem = by_law(plan, fmax(plan->rigid_error, plan->around_error));
-        return NT_E_RANGE;
-    }
-    const int better = problem && (problem->field != field->name || least < problem->minimum);
-    if (problem && least < field->maximum && better && !(plan->demand.budget > 0.0))
-        *problem = (nt_problem){field->name, field->unit, plan->demand.relative_accuracy, least, field->maximum};
-    return NT_E_RANGE;
+    const nt_problem rigid = nt_demand_accuracy(plan->accuracy, least);
+    const int finer = reason->code == NT_PROBLEM_ACCURACY && reason->minimum < rigid.maximum;
+    if (reason->code == NT_PROBLEM_BUDGET || (finer && reason->minimum <= least)) /* a table would do */
+        return nt_problem_refuse(problem, *reason);
+    if (least < rigid.maximum && !(plan->demand.budget > 0.0))
+        return nt_problem_refuse(problem, rigid);
+    const int is_said = finer || reason->code == NT_PROBLEM_SPREAD || reason->code == NT_PROBLEM_DEFORMED_TAIL;
+    return nt_problem_refuse(problem, is_said ? *reason : by_law(plan));
 }
 
-/* Whether there is a plan of another accuracy, if not of that budget, too. */
-static int is_planned(nt_plan *plan, const nt_plan_inputs *inputs, double accuracy, nt_deform_tried *tried,
-                      nt_problem *problem)
+/* --- What is tried --- */
+
+typedef struct search {
+    nt_plan_inputs inputs;
+    nt_scene scene;
+    nt_demand demand;
+    nt_deform_tried *tried; /* NULL: of another scene, nothing is known */
+    int meshes;             /* left */
+} search;
+
+static search search_of(const nt_plan_inputs *inputs, nt_deform_tried *tried)
 {
-    nt_plan_inputs asked = *inputs;
-    nt_demand demand = plan->demand;
-    demand.relative_accuracy = accuracy;
-    demand.budget = 0.0;
-    asked.demand = &demand;
-    return nt_plan_try(plan, &asked, tried, problem) == NT_OK;
+    return (search){.inputs = *inputs,
+                    .scene = *inputs->scene,
+                    .demand = inputs->demand ? *inputs->demand : nt_demand_defaults(),
+                    .tried = tried,
+                    .meshes = MESHES};
+}
+
+/* Whether there is a plan. */
+static int is_planned(search *s, nt_problem *problem)
+{
+    nt_plan plan;
+    nt_deform_tried none = {.count = 0}, *tried = s->tried ? s->tried : &none;
+    if (!(s->meshes > 0))
+        return 0;
+    s->inputs.scene = &s->scene;
+    s->inputs.demand = &s->demand;
+    tried->meshes = &s->meshes;
+    const int is = nt_plan_try(&plan, &s->inputs, tried, problem) == NT_OK;
+    tried->meshes = NULL;
+    return is;
+}
+
+/* Of another accuracy, if not of that budget, too. */
+static int keeps(search *s, double accuracy, nt_problem *problem)
+{
+    s->demand.relative_accuracy = accuracy;
+    s->demand.budget = 0.0;
+    s->meshes = MESHES;
+    return is_planned(s, problem);
 }
 
 /* The least of six digits that is not below. */
-static double printed(double accuracy)
+static double printed(double value)
 {
-    const double digit = pow(10.0, floor(log10(accuracy)) - 5.0);
-    return ceil(accuracy / digit - 1e-9) * digit;
+    const double digit = pow(10.0, floor(log10(value)) - 5.0);
+    return ceil(value / digit - 1e-9) * digit;
 }
 
 /* An accuracy of which there is a plan: what a refusal named, or what that names, or the largest there is. 0: none. */
-static double find(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, const nt_problem *first)
+static double find(search *s, const nt_problem *first)
 {
     nt_problem reason = *first;
     double named = 0.0;
-    int count = 0;
-    for (int i = 0; i < SAID && nt_problem_names(&reason, NT_DEMANDED) && reason.minimum > named; ++i) {
+    for (int i = 0; i < SAID && reason.code == NT_PROBLEM_ACCURACY && reason.minimum > named; ++i) {
         named = printed(reason.minimum);
-        if (is_planned(plan, inputs, named, tried, &reason))
+        if (keeps(s, named, &reason))
             return named;
     }
-    const double most = nt_demand_fields(&count)->maximum;
-    return is_planned(plan, inputs, most, tried, NULL) ? most : 0.0;
+    const double most = nt_demand_accuracy(0.0, 0.0).maximum;
+    return keeps(s, most, NULL) ? most : 0.0;
 }
 
 /* One that is near the smallest, between what is refused and what is planned: bisected. */
-static double narrow(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, double planned)
+static double narrow(search *s, const nt_plan *plan, double planned)
 {
     const double near = plan->relief.room ? NEAR_OVER_RELIEF : NEAR;
-    double low = fmax(plan->demand.relative_accuracy, STRICTEST), high = planned;
-    for (double tried_next = high / near; high > near * low; tried_next = sqrt(low * high)) {
-        const double accuracy = printed(tried_next);
-        if (is_planned(plan, inputs, accuracy, tried, NULL))
-            high = accuracy;
-        else
-            low = accuracy;
+    double low = fmax(plan->accuracy, STRICTEST), high = planned;
+    for (double next = high / near; high > near * low; next = sqrt(low * high)) {
+        const double accuracy = printed(next);
+        *(keeps(s, accuracy, NULL) ? &high : &low) = accuracy;
     }
     return high;
 }
 
-static nt_problem keep_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried,
-                            const nt_problem *reason)
+/* --- One change --- */
+
+/* From weak to strong, until one works. A field that the scene does not use is passed over. */
+static const struct {
+    const char *field;
+    double factor, least; /* of its value; and what it is at least, where it is 0 */
+} changes[] = {{"adhesion.hamaker_constant", 0.8, 0.0},
+               {"adhesion.work_of_adhesion", 1.25, 0.0},
+               {"adhesion.equilibrium_distance", 1.15, 0.0},
+               {"adhesion.hamaker_constant", 0.5, 0.0},
+               {"adhesion.work_of_adhesion", 1.6, 0.0},
+               {"adhesion.equilibrium_distance", 1.4, 0.0},
+               {"range.minimum_gap", 1.5, 0.5e-9},
+               {"adhesion.work_of_adhesion", 2.5, 0.0},
+               {"range.minimum_gap", 4.0, 2e-9},
+               {"adhesion.hamaker_constant", 0.2, 0.0},
+               {"adhesion.work_of_adhesion", 5.0, 0.0},
+               {"range.minimum_gap", 15.0, 1e-8},
+               {"range.minimum_gap", 60.0, 1e-7},
+               {"sample.youngs_modulus", 4.0, 0.0},
+               {"adhesion.hamaker_constant", 0.02, 0.0},
+               {"sample.youngs_modulus", 50.0, 0.0},
+               {"range.minimum_gap", 600.0, 1e-6}};
+
+/* Whether a scene has a use for another value of a field. */
+static int is_of_use(const nt_scene *scene, const char *name, double value)
 {
-    int count = 0;
-    const nt_field *field = nt_demand_fields(&count); /* the first is the accuracy */
-    const nt_demand demand = plan->demand;
-    const nt_problem law =
-        nt_problem_names(reason, NT_DEMANDED) ? by_law(plan, fmax(plan->rigid_error, plan->around_error)) : *reason;
-    double named = find(plan, inputs, tried, reason);
-    plan->demand = demand;
-    if (named == 0.0)
-        return law;
-    named = narrow(plan, inputs, tried, named);
-    plan->demand = demand;
-    return (nt_problem){field->name, field->unit, demand.relative_accuracy, named, field->maximum};
+    const nt_field *field = nt_scene_field(name);
+    nt_scene other = *scene;
+    if (field == nt_scene_field("adhesion.work_of_adhesion") && scene->adhesion.given != NT_ADHESION_GIVEN_WORK)
+        return 0;
+    nt_field_set(field, &other, value);
+    return value != nt_field_get(field, scene) && nt_scene_check(&other, NULL) == NT_OK;
 }
 
-/* Without adhesion a sample that jumps to a pull has a plan only farther out: names a gap beyond which there is one. */
-static nt_problem stay_away(nt_plan *plan, const nt_plan_inputs *inputs, const nt_problem *reason)
+nt_remedy nt_plan_remedy(const nt_plan_inputs *inputs)
 {
-    nt_scene scene = *inputs->scene;
-    nt_plan_inputs asked = *inputs;
-    const nt_term_refused words = words_of(plan);
-    asked.scene = &scene;
-    double gap = nt_plan_jump_gap(plan);
-    for (int i = 0; i < FARTHER_TRIES; ++i) {
-        nt_deform_tried tried = {.count = 0};
-        gap = printed(FARTHER * gap);
-        scene.range.minimum_gap = gap;
-        if (nt_plan_try(plan, &asked, &tried, NULL) == NT_OK)
-            return (nt_problem){words.jumps, "m", inputs->scene->range.minimum_gap, gap, FARTHEST};
+    int meshes = MESHES_OF_ALL;
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; ++i) {
+        search s = search_of(inputs, NULL);
+        s.meshes = meshes < MESHES ? meshes : MESHES;
+        const int had = s.meshes;
+        const nt_field *field = nt_scene_field(changes[i].field);
+        const double value = printed(fmax(changes[i].factor * nt_field_get(field, inputs->scene), changes[i].least));
+        if (!is_of_use(inputs->scene, field->name, value))
+            continue;
+        nt_field_set(field, &s.scene, value);
+        const int works = is_planned(&s, NULL);
+        meshes -= had - s.meshes;
+        if (works)
+            return (nt_remedy){field->name, field->unit, value};
     }
-    return *reason;
+    return (nt_remedy){NULL, NULL, 0.0};
 }
 
-nt_problem nt_plan_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried, const nt_problem *reason)
+/* Without adhesion a sample that jumps to a pull is planned only farther out: a gap beyond which it is. */
+static nt_problem of_jump(const nt_plan *plan, const nt_plan_inputs *inputs)
+{
+    const nt_field *field = nt_scene_field("range.minimum_gap");
+    nt_problem problem =
+        nt_problem_of(field->name, field->unit, inputs->scene->range.minimum_gap, INFINITY, NT_DEFORM_FARTHEST);
+    problem.code = NT_PROBLEM_JUMPS;
+    problem.cause = name_of(strongest(plan, 1));
+    double gap = nt_plan_jump_gap(plan);
+    for (int i = 0; i < FARTHER_TRIES && !problem.remedy.field; ++i) {
+        search s = search_of(inputs, NULL);
+        gap = printed(FARTHER * gap);
+        s.scene.range.minimum_gap = gap;
+        if (is_planned(&s, NULL)) {
+            problem.minimum = gap;
+            problem.remedy = (nt_remedy){field->name, field->unit, gap};
+        }
+    }
+    return problem;
+}
+
+nt_problem nt_plan_word(const nt_plan *plan, const nt_plan_inputs *inputs, nt_deform_tried *tried,
+                        const nt_problem *reason)
 {
     const int jumps = plan->source == NT_ADHESION_NONE && !plan->properties && isinf(plan->rigid_error);
-    const int by_law = reason->unit && strcmp(reason->unit, NT_UNIT_ERROR) == 0;
-    const int lost = jumps && isinf(reason->value);
-    nt_problem word = lost ? stay_away(plan, inputs, reason) : *reason;
-    if (lost && word.field != reason->field)
-        return word;
-    if (nt_problem_names(reason, NT_DEMANDED) || by_law)
-        word = keep_word(plan, inputs, tried, reason);
-    return jumps && !lost && isinf(word.value) ? stay_away(plan, inputs, &word) : word;
+    const int of_accuracy =
+        reason->code == NT_PROBLEM_ACCURACY || reason->code == NT_PROBLEM_DEFORMS || reason->code == NT_PROBLEM_TABLE;
+    const int is_closed = reason->code == NT_PROBLEM_BUDGET || reason->code == NT_PROBLEM_SPREAD;
+    search s = search_of(inputs, tried);
+    const double planned = of_accuracy ? find(&s, reason) : 0.0;
+    if (planned > 0.0)
+        return nt_demand_accuracy(plan->demand.relative_accuracy, narrow(&s, plan, planned));
+    nt_problem word = reason->code == NT_PROBLEM_ACCURACY ? by_law(plan) : *reason;
+    if (jumps && of_accuracy)
+        word = of_jump(plan, inputs);
+    if (!is_closed && !word.remedy.field)
+        word.remedy = nt_plan_remedy(inputs);
+    return word;
 }

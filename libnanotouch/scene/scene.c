@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/parts.h"
+
 #define FIELD(path, ...) NT_FIELD(nt_scene, path, __VA_ARGS__)
 #define CHOICE(path, choices, last, doc) FIELD(path, choices, 0.0, last, doc)
 #define NO_YES "no|yes"
@@ -108,18 +110,20 @@ const nt_field *nt_scene_fields(int *count)
     return scene_fields;
 }
 
+const nt_field *nt_scene_field(const char *name)
+{
+    int count = 0;
+    const nt_field *field = nt_scene_fields(&count);
+    for (int i = 0; i < count; ++i)
+        if (strcmp(field[i].name, name) == 0)
+            return &field[i];
+    return NULL;
+}
+
 /* Refuses `field` of a scene whose other fields leave it [minimum, maximum]. */
 static nt_status refuse(nt_problem *problem, const char *field, double value, double minimum, double maximum)
 {
-    int count = 0;
-    const nt_field *fields = nt_scene_fields(&count);
-    const char *unit = "";
-    for (int i = 0; i < count; ++i)
-        if (strcmp(fields[i].name, field) == 0)
-            unit = fields[i].unit;
-    if (problem)
-        *problem = (nt_problem){field, unit, value, minimum, maximum};
-    return NT_E_RANGE;
+    return nt_problem_refuse(problem, nt_problem_of(field, nt_scene_field(field)->unit, value, minimum, maximum));
 }
 
 nt_shape nt_scene_shape(const nt_scene *scene)
@@ -148,9 +152,9 @@ static nt_status check_shape(const nt_scene *scene, nt_problem *problem)
 {
     const nt_tip *tip = &scene->tip;
     const nt_shape shape = nt_scene_shape(scene);
-    nt_problem found = {"", "", 0.0, 0.0, 0.0};
+    nt_problem found = {.field = "", .unit = ""};
     if (nt_shape_check(&shape, &found) != NT_OK) {
-        const int sides = found.field[0] == 's';
+        const int sides = shape.sides != 0 && (shape.sides < 3 || shape.sides > 4);
         return refuse(problem, sides ? "tip.sides" : "tip.half_angle", sides ? tip->sides : tip->half_angle,
                       found.minimum, found.maximum);
     }

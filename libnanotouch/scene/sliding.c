@@ -91,7 +91,7 @@ static sampled sampled_corner(const nt_plan *plan, int corner, double load)
 
 static errors errors_of(const nt_plan *plan, double load)
 {
-    const int felt = plan->demand.quantity == NT_QUANTITY_FORCE;
+    const int felt = plan->quantity == NT_QUANTITY_FORCE;
     const double scale = felt ? plan->scale : nt_plan_force_scale(plan, load);
     errors worst = {0.0, 0.0, 0.0};
     if (!nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form)) {
@@ -124,8 +124,8 @@ static nt_status check_shape(const nt_plan *plan, nt_problem *problem)
     if (plan->friction.law.coefficient == 0.0 || plan->terms[NT_PLAN_CONTACT].form != NT_FORM_JKR)
         return NT_OK;
     if (problem)
-        *problem = (nt_problem){"friction.coefficient (of a cone or punch that adheres; its shear strength will do)",
-                                "", plan->friction.law.coefficient, 0.0, 0.0};
+        *problem = nt_problem_coded(NT_PROBLEM_FRICTION_SHAPE, nt_problem_of("friction.coefficient", "",
+                                                                             plan->friction.law.coefficient, 0.0, 0.0));
     return NT_E_RANGE;
 }
 
@@ -144,7 +144,7 @@ static nt_status take(nt_plan *plan, const errors *of, nt_problem *problem)
     plan->full_cost += term->cost;
     if (plan->demand.budget > 0.0 && plan->cost > plan->demand.budget * NT_BUDGET_ROUNDS) {
         if (problem)
-            *problem = (nt_problem){"demand.budget", "", plan->demand.budget, plan->cost, 1e9};
+            *problem = nt_demand_budget(plan->demand.budget, plan->cost);
         return NT_E_RANGE;
     }
     return NT_OK;
@@ -164,7 +164,7 @@ nt_status nt_plan_friction_of(nt_plan *plan, const nt_plan_inputs *inputs, nt_pr
     const errors found = errors_of(plan, scene.range.maximum_load);
     plan->friction.term.force = found.largest;
     plan->friction.term.bound = found.left_out;
-    if (plan->deformation.count == 0 && !plan->dents && found.left_out <= plan->demand.relative_accuracy)
+    if (plan->deformation.count == 0 && !plan->dents && found.left_out <= plan->accuracy)
         return NT_OK;
     return take(plan, &found, problem);
 }
@@ -172,7 +172,7 @@ nt_status nt_plan_friction_of(nt_plan *plan, const nt_plan_inputs *inputs, nt_pr
 void nt_plan_warn_friction(nt_plan *plan)
 {
     const nt_plan_term *term = &plan->friction.term;
-    const double demanded = plan->demand.relative_accuracy;
+    const double demanded = plan->accuracy;
     if (term->form == NT_FORM_OFF)
         return;
     if (isnan(term->bound) && !plan->dents)

@@ -45,8 +45,8 @@ static void check_drag(nt_plan *plan, const nt_scene *scene)
 {
     const double R = plan->contact.radius, h = fmax(scene->range.minimum_gap, scene->adhesion.equilibrium_distance);
     const double drag = 6.0 * NT_PI * scene->range.viscosity * R * R * scene->range.speed / h;
-    const double scale = plan->demand.quantity == NT_QUANTITY_FORCE ? plan->scale : plan->pull_off_force;
-    const double felt = fmax(plan->demand.force_floor, plan->demand.relative_accuracy * scale);
+    const double scale = plan->quantity == NT_QUANTITY_FORCE ? plan->scale : plan->pull_off_force;
+    const double felt = fmax(plan->demand.force_floor, plan->accuracy * scale);
     if (drag > felt)
         nt_plan_add_warning(plan, (nt_plan_warning){"viscous drag at the fastest approach, left out", "N", drag, felt});
 }
@@ -76,7 +76,7 @@ static void check_layer(nt_plan *plan, const nt_scene *scene)
 {
     const double nu = scene->sample.poisson_ratio, chi = plan->validity.thickness_ratio;
     const double alpha = 2.0 / NT_PI * (1.2876 - 1.4678 * nu + 1.3442 * nu * nu) / (1.0 - nu) * chi;
-    const double more = alpha + alpha * alpha, demanded = plan->demand.relative_accuracy;
+    const double more = alpha + alpha * alpha, demanded = plan->accuracy;
     if (scene->sample.thickness > 0.0 && !nt_plan_solves_layer(plan) && more > demanded)
         nt_plan_add_warning(
             plan, (nt_plan_warning){"layer taken for a half-space in contact, whose force is smaller by about", "",
@@ -87,7 +87,7 @@ static void check_layer(nt_plan *plan, const nt_scene *scene)
  * may add on the undeformed gap though that errs by more than is demanded: it is part of the bound. */
 static void check_deformed(nt_plan *plan)
 {
-    const double demanded = plan->demand.relative_accuracy;
+    const double demanded = plan->accuracy;
     const double flatter = SPHERE * plan->largest_indentation / plan->contact.radius;
     if (plan->deformation.count > 0 && plan->shape.kind == NT_SHAPE_SPHERE && flatter > demanded)
         nt_plan_add_warning(
@@ -97,6 +97,10 @@ static void check_deformed(nt_plan *plan)
                             (nt_plan_warning){"error of a sample that deforms, more than demanded: no finer table "
                                               "of it is made",
                                               "", plan->bound.force_error, demanded});
+    if (plan->drops_tails)
+        nt_plan_add_warning(plan, (nt_plan_warning){"long-range adhesion left out, which alone exceeds the work of "
+                                                    "adhesion, so that no bound is known: w",
+                                                    "J/m^2", plan->contact.work_of_adhesion, NAN});
     const double rigid = fmax(plan->rigid_error, plan->around_error);
     const int left = plan->deformation.count == 0 && rigid > 0.0 && plan->bound.force_error >= rigid;
     if (left && isinf(rigid)) /* beyond a jump no error is known */

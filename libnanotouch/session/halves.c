@@ -200,6 +200,14 @@ static nt_status find_master(nt_session *session, nt_problem *problem)
     return NT_E_DEVICE;
 }
 
+nt_status nt_session_check_bound(const nt_session *session, const nt_composition *composition, nt_problem *problem)
+{
+    const nt_plan *plan = nt_terrain_plan(composition->terrain);
+    if (!(session->slave.capabilities.can & NT_IS_REAL) || plan->dents || isfinite(plan->bound.force_error))
+        return NT_OK;
+    return nt_problem_refuse(problem, (nt_problem){.code = NT_PROBLEM_BOUND_OF_REAL_SLAVE});
+}
+
 nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
 {
     session->host = (nt_host){sizeof session->host, NT_HAL_API_VERSION, session_now, session_say, session};
@@ -210,6 +218,8 @@ nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
         status = find_leader(session, problem);
     if (status == NT_OK)
         status = check_halves(session, problem);
+    if (status == NT_OK)
+        status = nt_session_check_bound(session, session->now, problem);
     if (status == NT_OK)
         status = check_drive(session, problem);
     if (status == NT_OK)

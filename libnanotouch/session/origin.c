@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Two sessions are the same when nothing that they were opened with, or have been changed to, differs. */
 #include "session/origin.h"
+#include "core/problem.h"
 
 #include <math.h>
 #include <string.h>
@@ -97,7 +98,7 @@ nt_origin nt_origin_of(const nt_session_setup *setup)
 static nt_status differ(nt_problem *problem, const char *field, const char *unit, double kept, double own)
 {
     if (problem)
-        *problem = (nt_problem){field, unit, kept, own, own};
+        *problem = nt_problem_of(field, unit, kept, own, own);
     return NT_E_STATE;
 }
 

@@ -108,6 +108,8 @@ nt_terrain *nt_terrain_hold(nt_terrain *terrain);
 
 /* Terrain, plan, touch step, margins, guarantee. before: of the session so far, whose terrain serves where only
  * settings differ; or NULL. */
+/* halves.c: of a real slave the bound of the force has to be known, whatever was demanded. */
+nt_status nt_session_check_bound(const nt_session *session, const nt_composition *composition, nt_problem *problem);
 nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const nt_composition *before,
                      nt_problem *problem);
 /* As before, in another mode and at other scales: what is judged and promised is that of the loop that runs then. */

@@ -7,11 +7,12 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
+#include "core/problem.h"
 #include "session/state.h"
 
 struct nt_terrain {
     atomic_int holders; /* who has yet to close it */
-    nt_plan plan; /* borrows what follows */
+    nt_plan plan;       /* borrows what follows */
     const nt_surface *surface;
     const nt_radius_map *radii;
     struct {
@@ -47,7 +48,7 @@ static nt_status check_same(const agreement *same, size_t count, nt_problem *pro
     for (size_t i = 0; i < count; i++)
         if (same[i].value != same[i].expected)
             return refuse(problem,
-                          (nt_problem){same[i].field, same[i].unit, same[i].value, same[i].expected, same[i].expected},
+                          nt_problem_of(same[i].field, same[i].unit, same[i].value, same[i].expected, same[i].expected),
                           NT_E_RANGE);
     return NT_OK;
 }
@@ -57,7 +58,7 @@ static nt_status check_radii(const nt_terrain_setup *setup, nt_problem *problem)
 {
     const nt_surface *grid = &setup->radii->ratio, *surface = setup->surface;
     if (!surface)
-        return refuse(problem, (nt_problem){"radii without a surface", "", 1.0, 0.0, 0.0}, NT_E_ARGUMENT);
+        return refuse(problem, nt_problem_of("radii without a surface", "", 1.0, 0.0, 0.0), NT_E_ARGUMENT);
     const agreement same[] = {
         {"radii.nx", "", (double)grid->nx, (double)surface->nx},
         {"radii.ny", "", (double)grid->ny, (double)surface->ny},
@@ -74,7 +75,7 @@ static nt_status check_properties(const nt_terrain_setup *setup, nt_problem *pro
     const nt_surface *grid = &setup->properties->youngs_modulus, *surface = setup->surface;
     const nt_height_map *map = &setup->map;
     if (!surface && !map->heights)
-        return refuse(problem, (nt_problem){"properties without a surface", "", 1.0, 0.0, 0.0}, NT_E_ARGUMENT);
+        return refuse(problem, nt_problem_of("properties without a surface", "", 1.0, 0.0, 0.0), NT_E_ARGUMENT);
     const agreement same[] = {
         {"properties.nx", "", (double)grid->nx, (double)(surface ? surface->nx : map->nx)},
         {"properties.ny", "", (double)grid->ny, (double)(surface ? surface->ny : map->ny)},
@@ -90,9 +91,9 @@ static nt_status check(const nt_terrain_setup *setup, nt_problem *problem)
     if (status != NT_OK)
         return status;
     if (setup->map.heights && setup->surface)
-        return refuse(problem, (nt_problem){"surface beside a map", "", 1.0, 0.0, 0.0}, NT_E_ARGUMENT);
+        return refuse(problem, nt_problem_of("surface beside a map", "", 1.0, 0.0, 0.0), NT_E_ARGUMENT);
     if (setup->dilated != 0 && setup->dilated != 1)
-        return refuse(problem, (nt_problem){"dilated", "", setup->dilated, 0.0, 1.0}, NT_E_RANGE);
+        return refuse(problem, nt_problem_of("dilated", "", setup->dilated, 0.0, 1.0), NT_E_RANGE);
     if (setup->radii && check_radii(setup, problem) != NT_OK)
         return setup->surface ? NT_E_RANGE : NT_E_ARGUMENT;
     if (setup->properties && check_properties(setup, problem) != NT_OK)

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/problem.h"
 #include "nanotouch/terrain.h"
 #include "session/state.h"
 #include "surface/extremes.h"
@@ -42,10 +43,10 @@ static borders borders_of(const nt_terrain *terrain)
 nt_status nt_terrain_check_path(const nt_terrain *terrain, const double *xy, long count, nt_problem *problem)
 {
     const borders on = borders_of(terrain);
-    const nt_problem counts = {"path.count", "", 0.0, 1.0, (double)LONG_MAX};
+    const nt_problem counts = nt_problem_of("path.count", "", 0.0, 1.0, (double)LONG_MAX);
     nt_status status = check_within((double)count, &counts, problem);
     for (long i = 0; i < 2 * count && status == NT_OK; i++) {
-        const nt_problem valid = {i % 2 ? "path.y" : "path.x", "m", 0.0, on.first, on.last[i % 2]};
+        const nt_problem valid = nt_problem_of(i % 2 ? "path.y" : "path.x", "m", 0.0, on.first, on.last[i % 2]);
         status = check_within(xy[i], &valid, problem);
     }
     return status;
@@ -114,12 +115,12 @@ static nt_status check_area(const nt_terrain *terrain, const nt_area *area, nt_p
 {
     const borders on = borders_of(terrain);
     const nt_problem valid[] = {
-        {"area.x_min", "m", area->x_min, on.first, on.last[0]},
-        {"area.x_max", "m", area->x_max, area->x_min, on.last[0]},
-        {"area.y_min", "m", area->y_min, on.first, on.last[1]},
-        {"area.y_max", "m", area->y_max, area->y_min, on.last[1]},
-        {"area.x", "m", area->x, area->x_min, area->x_max},
-        {"area.y", "m", area->y, area->y_min, area->y_max},
+        nt_problem_of("area.x_min", "m", area->x_min, on.first, on.last[0]),
+        nt_problem_of("area.x_max", "m", area->x_max, area->x_min, on.last[0]),
+        nt_problem_of("area.y_min", "m", area->y_min, on.first, on.last[1]),
+        nt_problem_of("area.y_max", "m", area->y_max, area->y_min, on.last[1]),
+        nt_problem_of("area.x", "m", area->x, area->x_min, area->x_max),
+        nt_problem_of("area.y", "m", area->y, area->y_min, area->y_max),
     };
     nt_status status = NT_OK;
     for (size_t i = 0; i < sizeof valid / sizeof valid[0] && status == NT_OK; i++)

@@ -9,6 +9,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/problem.h"
+
 #define HEIGHT_MAX 1.0                 /* [m] */
 #define POLE (-0.26794919243112270647) /* sqrt(3) - 2 */
 enum {
@@ -124,13 +126,13 @@ nt_status nt_height_map_check(const nt_height_map *map, nt_problem *problem)
     if (problem == NULL)
         problem = &ignored;
     if (map->heights == NULL) {
-        *problem = (nt_problem){"map.heights", "m", 0.0, -HEIGHT_MAX, HEIGHT_MAX};
+        *problem = nt_problem_of("map.heights", "m", 0.0, -HEIGHT_MAX, HEIGHT_MAX);
         return NT_E_ARGUMENT;
     }
     const long counts[2] = {map->nx, map->ny};
     for (int k = 0; k < 2; k++)
         if (counts[k] < PIXELS_MIN || counts[k] > PIXELS_MAX) {
-            *problem = (nt_problem){k == 0 ? "map.nx" : "map.ny", "", (double)counts[k], PIXELS_MIN, PIXELS_MAX};
+            *problem = nt_problem_of(k == 0 ? "map.nx" : "map.ny", "", (double)counts[k], PIXELS_MIN, PIXELS_MAX);
             return NT_E_RANGE;
         }
     const nt_status status = nt_field_check(fields, 2, map, problem);
@@ -138,7 +140,7 @@ nt_status nt_height_map_check(const nt_height_map *map, nt_problem *problem)
         return status;
     for (long p = 0; p < map->nx * map->ny; p++)
         if (!(fabs(map->heights[p]) <= HEIGHT_MAX)) {
-            *problem = (nt_problem){"map.heights", "m", map->heights[p], -HEIGHT_MAX, HEIGHT_MAX};
+            *problem = nt_problem_of("map.heights", "m", map->heights[p], -HEIGHT_MAX, HEIGHT_MAX);
             return isfinite(map->heights[p]) ? NT_E_RANGE : NT_E_NOT_FINITE;
         }
     return NT_OK;

@@ -35,7 +35,7 @@ static inline nt_status open_device(void *context, const nt_host *host, nt_probl
     device *d = context;
     (void)host;
     if (d->opens != NT_OK && problem)
-        *problem = (nt_problem){"no such line", "", 0.0, 0.0, 0.0};
+        *problem = (nt_problem){.field = "no such line"};
     return note(d, 'o', d->opens);
 }
 

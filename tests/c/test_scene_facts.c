@@ -39,7 +39,7 @@ static double well_bound(const void *context, double gap)
 
 static void make(nt_plan *made, const nt_scene *scene, double accuracy)
 {
-    const nt_demand demand = {.relative_accuracy = accuracy};
+    const nt_demand demand = {.relative_accuracy = accuracy, .bound = accuracy > 0.0 ? NT_BOUND_KEPT : NT_BOUND_EXACT};
     const nt_plan_inputs inputs = {.scene = scene, .demand = &demand};
     nt_problem problem = {0};
     if (nt_plan_make(made, &inputs, &problem) != NT_OK)
@@ -108,7 +108,7 @@ static void expect(double fact, double found)
 /* Of laws that add on the undeformed gap; of a sample that deforms under them the facts are those of its table. */
 static int make_both(const nt_scene *scene, double accuracy)
 {
-    const nt_demand demand = {.relative_accuracy = accuracy};
+    const nt_demand demand = {.relative_accuracy = accuracy, .bound = accuracy > 0.0 ? NT_BOUND_KEPT : NT_BOUND_EXACT};
     const nt_plan_inputs inputs = {.scene = scene, .demand = &demand};
     const int made = nt_plan_make(&plan, &inputs, NULL) == NT_OK;
     make(&whole, scene, 0.0);

@@ -78,6 +78,7 @@ static nt_status make(const nt_scene *scene, double accuracy, nt_quantity quanti
 {
     nt_demand demand = nt_demand_defaults();
     demand.relative_accuracy = accuracy;
+    demand.bound = accuracy > 0.0 ? NT_BOUND_KEPT : NT_BOUND_EXACT;
     demand.quantity = quantity;
     nt_plan_inputs inputs = {
         .scene = scene, .demand = &demand, .surface = &surface, .radii = &radii, .properties = &properties};

@@ -51,8 +51,9 @@ static void the_contact_law_follows_from_the_scene(void **state)
     assert_int_equal(contact_form(&far, &demand), NT_FORM_OFF); /* never touches */
     demand.relative_accuracy = 1e-8;                            /* below the table's error */
     assert_int_equal(contact_form(&tailless, &demand), NT_FORM_POLISHED);
-    demand.relative_accuracy = 0.0; /* everything, exact */
+    demand.bound = NT_BOUND_EXACT; /* everything, exact */
     assert_int_equal(contact_form(&silicon, &demand), NT_FORM_POLISHED);
+    demand.bound = NT_BOUND_KEPT;
     demand.relative_accuracy = 0.01;
     demand.force_floor = 1e-6; /* no adhesion can be felt */
     assert_int_equal(contact_form(&silicon, &demand), NT_FORM_SHAPE);
@@ -133,7 +134,7 @@ static void a_plan_keeps_its_bound(void **state)
     for (int n = 0; n < 200; n++) {
         nt_scene scene = n % 2 ? nt_scene_defaults() : dry_silicon();
         const nt_demand demand = {.relative_accuracy = pow(10.0, -6.0 + 5.4 * nt_random_uniform(&random))};
-        const nt_demand exact = {.relative_accuracy = 0.0};
+        const nt_demand exact = {.bound = NT_BOUND_EXACT};
         scene.sample.youngs_modulus = pow(10.0, 9.0 + 3.0 * nt_random_uniform(&random));
         scene.adhesion.contact_potential = nt_random_uniform(&random);
         scene.adhesion.hamaker_constant = pow(10.0, -22.0 + 3.0 * nt_random_uniform(&random));
@@ -229,7 +230,7 @@ static void expect_refusal(const nt_scene *scene, const nt_demand *demand, nt_st
 static void what_cannot_be_is_refused_by_name(void **state)
 {
     (void)state;
-    nt_demand demand = {.relative_accuracy = 0.0};
+    nt_demand demand = {.bound = NT_BOUND_EXACT};
     nt_problem problem = {0};
     nt_scene scene = dry_silicon();
     scene.adhesion.hamaker_constant = 1e-17; /* pulls more than w = 0.1 J/m^2 does */
@@ -246,6 +247,8 @@ static void what_cannot_be_is_refused_by_name(void **state)
     scene.range.maximum_load = NAN;
     expect_refusal(&scene, &demand, NT_E_NOT_FINITE, "range.maximum_load");
     scene = nt_scene_defaults();
+    demand = (nt_demand){.relative_accuracy = 0.0}; /* is kept by nothing, as any other below rounding */
+    expect_refusal(&scene, &demand, NT_E_RANGE, "demand.relative_accuracy");
     demand.relative_accuracy = 1e-14; /* below rounding */
     expect_refusal(&scene, &demand, NT_E_RANGE, "demand.relative_accuracy");
     nt_probe probe = nt_rig_defaults().probe;
@@ -298,7 +301,7 @@ static void measured_pull_off_is_that_of_the_whole(void **state)
     (void)state;
     nt_scene scene = dry_silicon();
     nt_problem problem = {0};
-    const nt_demand within = {.relative_accuracy = 0.1}, exact = {.relative_accuracy = 0.0};
+    const nt_demand within = {.relative_accuracy = 0.1}, exact = {.bound = NT_BOUND_EXACT};
     int deformed = 0;
     scene.adhesion.given = NT_ADHESION_GIVEN_PULL_OFF;
     scene.adhesion.contact_potential = 0.5;

@@ -80,7 +80,10 @@ static void a_jump_names_a_gap(void **state)
     scene.adhesion.contact_potential = 0.5;
     nt_problem problem = {0};
     assert_int_equal(ask_force(&scene, 0.01, &problem), NT_E_RANGE);
-    assert_non_null(strstr(problem.field, "jumps to the tip, pulled by the electrostatic force"));
+    assert_int_equal(problem.code, NT_PROBLEM_JUMPS);
+    assert_string_equal(problem.field, "range.minimum_gap");
+    assert_string_equal(problem.cause, "electrostatic");
+    assert_string_equal(problem.remedy.field, "range.minimum_gap");
     assert_string_equal(problem.unit, "m");
     scene.range.minimum_gap = problem.minimum;
     assert_int_equal(ask_force(&scene, 0.01, NULL), NT_OK);

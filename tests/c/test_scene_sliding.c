@@ -147,7 +147,7 @@ static void keeps_its_bound(void **unused)
         nt_scene scene = rubbed(&random);
         scene.friction.shear_strength = between(&random, 1e2, 1e9);
         scene.friction.coefficient = between(&random, 1e-6, 1.0);
-        const nt_demand demand = {.relative_accuracy = between(&random, 1e-6, 0.3)}, exact = {0};
+        const nt_demand demand = {.relative_accuracy = between(&random, 1e-6, 0.3)}, exact = {.bound = NT_BOUND_EXACT};
         nt_plan_inputs inputs = {.scene = &scene, .demand = &demand};
         if (nt_plan_make(&plan, &inputs, NULL) != NT_OK)
             continue;

@@ -86,7 +86,7 @@ static void touch_and_leave(const nt_session_setup *setup, void (*look)(const nt
 static nt_session_setup exact_setup(double youngs_modulus)
 {
     nt_session_setup setup = nt_session_defaults();
-    setup.demand.relative_accuracy = 0.0;
+    setup.demand.bound = NT_BOUND_EXACT;
     setup.clearance = 10e-9;
     setup.rig.probe.spring_constant = 500.0;
     setup.scene.sample.youngs_modulus = setup.scene.tip.youngs_modulus = youngs_modulus;
@@ -168,7 +168,7 @@ static void other_forms_of_contact(void **state)
     (void)state;
     nt_session_setup setup = exact_setup(5e9);
     const nt_frame exact = pressed(&setup);
-    setup.demand.relative_accuracy = 0.01;
+    setup.demand.bound = NT_BOUND_KEPT;
     const nt_frame table = pressed(&setup);
     print_message("c %.4f nm exact, %.4f nm by the plan for 1 %%\n", 1e9 * exact.cohesive_radius,
                   1e9 * table.cohesive_radius);

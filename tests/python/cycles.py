@@ -73,9 +73,9 @@ def made_of(scene: Scene, body: Surface, seed: int, contrast: tuple[float, float
 
     stiff, sticky = (rng.uniform(1.0, most) ** pattern() for most in contrast)
     given = {"youngs_modulus": np.clip(scene.sample.youngs_modulus * stiff, 1e2, 1e13)}
-    facts = scene.plan(relative_accuracy=0.0).explain()
+    facts = scene.plan(bound="exact").explain()
     if facts["adhesion_source"] != "none":
-        pulled = sum(-scene.plan(relative_accuracy=0.0).law(name, 0.0).F for name in ("vdw",)) / (
+        pulled = sum(-scene.plan(bound="exact").law(name, 0.0).F for name in ("vdw",)) / (
             2.0 * np.pi * scene.tip.radius
         )
         given["work_of_adhesion"] = np.clip((facts["work_of_adhesion"] + max(pulled, 0.0)) * sticky, 0.0, 10.0)

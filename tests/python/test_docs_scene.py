@@ -121,7 +121,7 @@ def test_numbers_of_the_plan_page() -> None:
     assert plan.maximum_stiffness == pytest.approx(665, abs=0.5)
     assert plan.cutoff_gap(10e-12) == pytest.approx(5.6e-9, abs=0.05e-9)
     assert plan.stable_step(1e-12) == pytest.approx(78e-9, abs=0.5e-9)
-    exact = Scene().plan(relative_accuracy=0.0)
+    exact = Scene().plan(bound="exact")
     assert exact.cost == exact.explain()["full_cost"]
     for preset, lam in ((presets.paper_inas, 0.0597), (presets.paper_mica, 5.23)):  # both ends of its table
         found = preset()[0].plan()
@@ -146,7 +146,7 @@ def test_bound_of_each_quantity_is_the_sum_of_its_terms() -> None:
 def test_dry_silicon_steps_by_dugdales_own_fold() -> None:
     """Page on interactions: P = 128 lambda^3/(9 pi) pi w R where the range begins, with what the tail leaves of w."""
     scene = Scene(medium={"relative_humidity": 0.0})
-    plan = scene.plan(relative_accuracy=0.0)
+    plan = scene.plan(bound="exact")
     facts = plan.explain()
     lam, w, capture = facts["lambda"], facts["work_of_adhesion"], facts["capture_gap"]
     assert (lam, w) == (pytest.approx(0.166, abs=5e-4), pytest.approx(83e-3, abs=0.5e-3))
@@ -161,10 +161,10 @@ def test_dry_silicon_steps_by_dugdales_own_fold() -> None:
 
 def test_tail_acts_in_every_state_and_is_held() -> None:
     """With a meniscus, too: near the release gap and far out the force is the tail's, on both histories."""
-    plan = Scene().plan(relative_accuracy=0.0)
+    plan = Scene().plan(bound="exact")
     facts = plan.explain()
     tail = next(term for term in plan.terms if term.name == "vdw")
-    bare = Scene(adhesion={"hamaker_constant": 0.0}).plan(relative_accuracy=0.0).explain()
+    bare = Scene(adhesion={"hamaker_constant": 0.0}).plan(bound="exact").explain()
     left = bare["work_of_adhesion"] - tail.force / (2 * math.pi * 20e-9)
     assert facts["work_of_adhesion"] == pytest.approx(left, rel=1e-12)
     assert bare["work_of_adhesion"] / bare["cohesive_stress"] == pytest.approx(

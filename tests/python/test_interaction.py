@@ -158,7 +158,7 @@ def test_stiffness_and_radius_over_topography(name: str) -> None:
     body = cycles.bumpy(scene, 3)
     width = body.size[0]
     x, y = rng.uniform(0.1 * width, 0.8 * width, (2, 500))
-    exact = Interaction(scene.plan(0.0, surface=body), "retract")
+    exact = Interaction(scene.plan(bound="exact", surface=body), "retract")
     for quantity in ("stiffness", "radius"):
         plan = scene.plan(1e-3, quantity=quantity, surface=body)
         assert plan.terms[0].form == "local"

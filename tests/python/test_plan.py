@@ -101,7 +101,7 @@ BARRIERS = {
 @pytest.mark.parametrize("name", BARRIERS)
 def test_pull_off_is_the_strongest_pull_wherever_it_is(name: str) -> None:
     """In contact or, behind a barrier, out of it: 60 000 gaps on the way out, an own search without refinement."""
-    plan = BARRIERS[name].plan(relative_accuracy=0.0)
+    plan = BARRIERS[name].plan(bound="exact")
     facts = plan.explain()
     outermost = max(facts["release_gap"], 1e-13)
     gaps = np.concatenate(
@@ -127,7 +127,7 @@ def test_no_attraction_is_steeper_than_the_minimum_spring(name: str) -> None:
     scene = BARRIERS.get(name, charged)
     wanted = 0.0 if name == "second minimum" else 0.1  # it jumps there: refused
     spring = scene.plan(relative_accuracy=wanted).minimum_spring
-    exact = scene.plan(relative_accuracy=0.0)
+    exact = scene.plan(bound="exact")
     capture = max(exact.explain()["capture_gap"], 1e-13)
     gaps = np.concatenate(
         [
@@ -255,7 +255,7 @@ def test_a_session_makes_the_plan_of_its_demand(accuracy: float) -> None:
 def test_other_quantities(quantity: str, name: str) -> None:
     """Against everything on and exact, the bound of stiffness and radius holds; folds are where they are exactly."""
     scene, _ = getattr(presets, name)()
-    plan, exact = scene.plan(relative_accuracy=0.01, quantity=quantity), scene.plan(relative_accuracy=0.0)  # type: ignore[arg-type]
+    plan, exact = scene.plan(relative_accuracy=0.01, quantity=quantity), scene.plan(bound="exact")  # type: ignore[arg-type]
     assert plan.quantity == quantity
     facts = plan.explain()
     gaps = np.linspace(0.99 * facts["release_gap"], -facts["largest_indentation"], 1000)
@@ -273,7 +273,7 @@ def test_other_quantities(quantity: str, name: str) -> None:
 def test_never_dearer_than_everything() -> None:
     for name in PRESETS:
         scene, _ = getattr(presets, name)()
-        exact = scene.plan(relative_accuracy=0.0)
+        exact = scene.plan(bound="exact")
         for accuracy in (0.3, 0.01, 1e-4, 1e-4 if name == "cell_in_liquid" else 1e-6):
             plan = scene.plan(relative_accuracy=accuracy)
             assert plan.cost <= exact.cost
@@ -372,7 +372,7 @@ def test_numbers_for_control_and_simulators() -> None:
 def test_below_the_minimum_spring_the_tip_jumps_in() -> None:
     """A spring stiffer than the steepest attraction has one equilibrium at every base height, a softer one several."""
     scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"contact_potential": 3.0, "work_of_adhesion": 0.0})
-    plan = scene.plan(relative_accuracy=0.0)
+    plan = scene.plan(bound="exact")
     force = plan.force(gap := np.linspace(5e-9, -0.5e-9, 20001))
     for spring, monotonous in ((1.01 * plan.minimum_spring, True), (0.5 * plan.minimum_spring, False)):
         base = gap - force / spring  # where the base has to be to hold the tip there

@@ -115,7 +115,7 @@ def test_rtol_with_and_without_per_cent(capsys: pytest.CaptureFixture[str]) -> N
     assert ask(capsys, "polyester", "--relative-accuracy", "1%") == ask(
         capsys, "polyester", "--relative-accuracy", "0.01"
     )
-    exact = ask(capsys, "polyester", "--relative-accuracy", "0")
+    exact = ask(capsys, "polyester", "--bound", "exact")
     assert exact["cost"] == exact["full_cost"]
 
 

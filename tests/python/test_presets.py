@@ -112,7 +112,7 @@ FACTS = {
 def test_the_numbers_of_what_is_felt(name: str) -> None:
     """By the plan that is exact, everything on."""
     scene, rig = getattr(presets, name)()
-    plan, facts = scene.plan(relative_accuracy=0.0), FACTS[name]
+    plan, facts = scene.plan(bound="exact"), FACTS[name]
     gaps = np.geomspace(1e-7, 1e-10, 20001)
     law = plan.run(gaps)
     gives_way = (-law.k > rig.probe.spring_constant) | (np.diff(law.F, prepend=0.0) < -0.2 * plan.pull_off_force)
@@ -140,14 +140,14 @@ def test_the_noise_of_the_lever_is_as_said() -> None:
         scene, rig = getattr(presets, name)()
         plan = scene.plan(rig=rig)
         assert plan.pull_off_force / plan.explain()["probe_noise"] == pytest.approx(times, abs=0.1)
-    gold = presets.silicon_on_gold()[0].plan(relative_accuracy=0.0)
+    gold = presets.silicon_on_gold()[0].plan(bound="exact")
     assert -float(gold.law("electrostatic", 0.0).F) == pytest.approx(0.525e-9, rel=0.01)
 
 
 def test_a_ball_that_is_rubbed_slips_as_said() -> None:
     """Rubbed over 0.4 um at the largest load: the lever shows tau0 pi a^2, and the hand would have 1.7 N of it."""
     scene, rig = presets.polystyrene_ball()
-    plan = scene.plan(rig=rig, relative_accuracy=0.0)
+    plan = scene.plan(rig=rig, bound="exact")
     assert plan.friction.force == pytest.approx(0.55e-6, rel=0.03)
     rubbed = Interaction(plan)
     x = np.linspace(0.0, 0.4e-6, 401)

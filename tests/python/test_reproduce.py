@@ -109,7 +109,7 @@ def test_onset_is_where_the_exact_sphere_pulls_with_1_percent(statements: dict[i
 
     def excess(gap: float) -> float:
         s = gap + z0
-        return 2 * H * R**3 / (3 * s**2 * (s + 2 * R) ** 2) - 0.01 * scene.plan(relative_accuracy=0.0).pull_off_force
+        return 2 * H * R**3 / (3 * s**2 * (s + 2 * R) ** 2) - 0.01 * scene.plan(bound="exact").pull_off_force
 
     onset = find(statements[5], "a non-contact force starts")
     assert onset.verdict == "does not hold"

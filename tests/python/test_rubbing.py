@@ -42,7 +42,7 @@ def test_a_scene_slips_where_its_pressure_and_area_say() -> None:
 def test_a_scene_rubs_as_the_law_that_stands_alone() -> None:
     """Under water and adhesion, with a load that varies: the same path given to nt.Friction, contact by contact."""
     scene = nt.Scene(friction={"shear_strength": SHEAR, "coefficient": COEFFICIENT})
-    plan, rng = scene.plan(0.0), np.random.default_rng(2)
+    plan, rng = scene.plan(bound="exact"), np.random.default_rng(2)
     x, y = np.cumsum(rng.normal(0.0, 0.1e-9, (2, 400)), axis=1)
     z = -0.15e-9 + 0.1e-9 * np.sin(np.linspace(0.0, 20.0, 400))
     contact = Interaction(plan, "retract")

@@ -165,7 +165,7 @@ def test_a_measured_pull_off_is_that_of_the_plan_there(given: str) -> None:
         one = {"work_of_adhesion": surface.work_of_adhesion[j, i]} | {k: v[j, i] for k, v in made_of.items()}
         tiny = nt.Surface(nt.Topography(np.zeros((4, 4)), (1e-9, 1e-9)),
                           **{k: np.full((4, 4), v) for k, v in one.items()})  # fmt: skip
-        assert scene.plan(0.0, surface=tiny).pull_off_force == pytest.approx(forces[j, i], rel=0.01)
+        assert scene.plan(bound="exact", surface=tiny).pull_off_force == pytest.approx(forces[j, i], rel=0.01)
 
 
 def test_a_force_that_no_adhesion_makes_is_refused() -> None:
@@ -298,6 +298,6 @@ def test_a_real_map_of_adhesion_is_touched() -> None:
     touched = named.touched_by(soft)
     with pytest.raises(InvalidValue, match="deforms under van der Waals, which cannot be planned here"):
         soft.plan(surface=touched)
-    told = next(warning for warning in soft.plan(0.0, surface=touched).warnings if "jumps" in warning.text)
+    told = next(warning for warning in soft.plan(bound="exact", surface=touched).warnings if "jumps" in warning.text)
     assert told.value > told.limit == 0.55
     assert np.isfinite(told.value)

@@ -36,7 +36,7 @@ def test_a_fitted_curve_is_felt_as_it_was_fitted(model: str) -> None:
     given |= {"cohesive_range": 0.3e-9} if model == "maugis" else {}
     result = nt.fit.fit_curve(curve, model, radius=contact.radius, **given)
     scene = result.to_scene()
-    law = scene.plan(0.0)
+    law = scene.plan(bound="exact")
     there = result.indentation > 0.9 * result.indentation.min()  # JKR's fold is not that of a finite range
     found = law.force(-result.indentation[there], "retract")
     scale = max(law.pull_off_force, 0.01 * result.force.max())

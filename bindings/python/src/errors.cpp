@@ -36,8 +36,8 @@ void raise_on(nt_status status, const nt_problem &problem, const std::string &wh
 {
     if (status == NT_OK)
         return;
-    if (!problem.field)
+    if (!problem.field && problem.code == NT_PROBLEM_RANGE)
         raise_on(status, what);
-    char text[256];
+    char text[NT_PROBLEM_TEXT];
     raise(status, what + ": " + nt_problem_print(&problem, text, sizeof text));
 }

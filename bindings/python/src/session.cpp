@@ -129,6 +129,7 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     setup.ring_capacity = options["ring_capacity"].cast<long>();
     setup.minimum_margin = options["minimum_margin"].cast<double>();
     setup.demand.relative_accuracy = options["relative_accuracy"].cast<double>();
+    setup.demand.bound = static_cast<nt_bound>(options["bound"].cast<int>());
     if (!options["law"].is_none()) {
         made->law->call = options["law"];
         set_control(setup.settings, *made->law);

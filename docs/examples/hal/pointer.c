@@ -150,7 +150,8 @@ static nt_status configure(void *context, const nt_configuration *configuration,
     pointer *p = context;
     const long port = strtol(configuration->option, NULL, 10);
     if (port < 1 || port > 65535) {
-        *problem = (nt_problem){"option: the device's port", "", (double)port, 1.0, 65535.0};
+        *problem = (nt_problem){
+            .field = "option: the device's port", .value = (double)port, .minimum = 1.0, .maximum = 65535.0};
         return NT_E_RANGE;
     }
     const struct sockaddr_in address = {

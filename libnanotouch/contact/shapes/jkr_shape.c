@@ -16,6 +16,7 @@
 #include <stddef.h>
 
 #include "contact/reduced.h"
+#include "core/problem.h"
 #include "core/roots.h"
 #include "nanotouch/field.h"
 #include "nanotouch/geometry.h"
@@ -57,7 +58,7 @@ nt_status nt_jkr_shape_check(const nt_jkr_shape *contact, nt_problem *problem)
     const int round_cone = kind == NT_SHAPE_CONE && contact->shape.sides == 0;
     if (!round_cone && kind != NT_SHAPE_PUNCH && kind != NT_SHAPE_PARABOLOID) {
         if (problem != NULL)
-            *problem = (nt_problem){"shape", "", (double)kind, NT_SHAPE_PARABOLOID, NT_SHAPE_PUNCH};
+            *problem = nt_problem_of("shape", "", (double)kind, NT_SHAPE_PARABOLOID, NT_SHAPE_PUNCH);
         return NT_E_UNSUPPORTED;
     }
     return nt_field_check(jkr_fields, 2, contact, problem);

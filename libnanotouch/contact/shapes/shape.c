@@ -8,6 +8,7 @@
 
 #include "contact/hertz.h"
 #include "contact/shapes/profile.h"
+#include "core/problem.h"
 #include "core/strided.h"
 #include "nanotouch/field.h"
 #include "nanotouch/geometry.h"
@@ -61,12 +62,12 @@ nt_status nt_shape_check(const nt_shape *shape, nt_problem *problem)
     const int flank = has_flank(shape->kind);
     if (!is_known(shape->kind)) {
         if (problem != NULL)
-            *problem = (nt_problem){"kind", "", (double)shape->kind, NT_SHAPE_PARABOLOID, NT_SHAPE_COUNT - 1};
+            *problem = nt_problem_of("kind", "", (double)shape->kind, NT_SHAPE_PARABOLOID, NT_SHAPE_COUNT - 1);
         return NT_E_ARGUMENT;
     }
     if (flank && shape->sides != 0 && shape->sides != 3 && shape->sides != 4) {
         if (problem != NULL)
-            *problem = (nt_problem){"sides", "", shape->sides, 3.0, 4.0};
+            *problem = nt_problem_of("sides", "", shape->sides, 3.0, 4.0);
         return NT_E_ARGUMENT;
     }
     const int first = shape->kind == NT_SHAPE_CONE ? 1 : 0;

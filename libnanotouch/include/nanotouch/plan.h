@@ -25,11 +25,19 @@ typedef enum nt_quantity {
     NT_QUANTITY_FOLDS
 } nt_quantity;
 
+/* What a plan's bound is held to. Of a real slave it has to be known: nt_session_open. */
+typedef enum nt_bound {
+    NT_BOUND_KEPT,  /* it is no more than what is demanded, or there is no plan */
+    NT_BOUND_EXACT, /* every law in full, with the bound of that: infinite where none is known */
+    NT_BOUND_ANY    /* what is demanded, or else the least there is, or infinite: not known, which is warned of */
+} nt_bound;
+
 /* How true the felt force must be, and what it may cost. */
 typedef struct nt_demand {
-    double relative_accuracy; /* of the quantity, over max(|it|, its scale) [-], 1e-11 .. 0.5; 0: everything, exact */
+    double relative_accuracy; /* of the quantity, over max(|it|, its scale) [-], 0 .. 0.5; kept from some 1e-11 on */
     double force_floor;       /* forces below this cannot be felt [N], >= 0 */
     nt_quantity quantity;     /* "force|stiffness|radius|folds" */
+    nt_bound bound;           /* "kept|exact|any" */
     double budget;            /* of one evaluation, in Hertz evaluations; 0: none [-] */
 } nt_demand;
 /* 1 % of the force, no floor, no budget. */
@@ -132,8 +140,11 @@ typedef struct nt_plan {
     double full_cost;     /* of everything on, exact [Hertz evaluations] */
     double scale; /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy), a thousandth of the
                    * largest load where nothing pulls [N, N/m, m] */
-    nt_demand demand;   /* as given */
-    double probe_noise; /* of the force, RMS: what is weaker the probe cannot tell; 0: no probe [N] */
+    nt_demand demand;     /* as given */
+    double accuracy;      /* what this candidate is held to; 0: everything exact [-] */
+    int drops_tails;      /* 1: adhesion without its tail, which alone exceeds it; no bound is known */
+    nt_quantity quantity; /* what its errors are of; tables of a sample are of forces, whatever is demanded */
+    double probe_noise;   /* of the force, RMS: what is weaker the probe cannot tell; 0: no probe [N] */
     nt_plan_rivals rivals;
     nt_plan_warning warnings[NT_PLAN_WARNINGS_MAX];
     int warning_count;

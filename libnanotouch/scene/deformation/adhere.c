@@ -53,7 +53,7 @@ static int has_others(const nt_plan *plan)
 
 int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene)
 {
-    const double demanded = plan->demand.relative_accuracy;
+    const double demanded = plan->accuracy;
     const int solid =
         plan->source == NT_ADHESION_SOLID && (scene->medium.kind == NT_MEDIUM_LIQUID || plan->elastic_number > SOFT);
     const int known = scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF && scene->sample.thickness == 0.0 &&
@@ -139,6 +139,19 @@ static int is_left(const nt_plan *plan)
     return nt_plan_deform_share(plan) <= STRONGEST * plan->contact.work_of_adhesion;
 }
 
+/* What of the strongest tail would be left. */
+static nt_problem of_tail(const nt_plan *plan, const nt_scene *scene)
+{
+    const int tail = nt_plan_strongest_tail(plan);
+    const nt_field *field = nt_scene_field(nt_term_rows[tail]->words.tail);
+    const double value = nt_field_get(field, scene), w = plan->contact.work_of_adhesion;
+    nt_problem problem =
+        nt_problem_of(field->name, field->unit, value, 0.0, value * STRONGEST * w / nt_plan_deform_share(plan));
+    problem.code = NT_PROBLEM_DEFORMED_TAIL;
+    problem.cause = nt_term_rows[tail]->words.title;
+    return problem;
+}
+
 nt_status nt_plan_deform_contact(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
 {
     if (!is_left(plan) || nt_plan_laws_at(plan, scene, work_of_adhesion, NULL) != NT_OK)
@@ -151,8 +164,9 @@ nt_status nt_plan_deform_contact(nt_plan *plan, const nt_scene *scene, double wo
 nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
 {
     nt_plan_options options;
+    nt_plan_choice choice;
     if (!is_left(plan))
-        return NT_E_RANGE;
+        return nt_problem_refuse(problem, of_tail(plan, scene));
     nt_status status = nt_plan_adhere(plan, scene, problem);
     if (status != NT_OK || plan->source == NT_ADHESION_NONE)
         return NT_E_RANGE;
@@ -161,8 +175,10 @@ nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double err
     drop_others(plan, &options, error);
     if (plan->deformation.holds)
         take_contact(plan, &options, error);
-    status = nt_plan_choose(plan, &options, problem);
-    if (status == NT_OK)
-        status = count_from_fold(plan);
+    status = nt_plan_choose(&options, plan->accuracy, plan->demand.budget, &choice, problem);
+    if (status != NT_OK)
+        return status;
+    nt_plan_take(plan, &options, &choice);
+    status = count_from_fold(plan);
     return status == NT_OK ? nt_plan_facts(plan) : status;
 }

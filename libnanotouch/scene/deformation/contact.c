@@ -146,7 +146,7 @@ static double end_gap(const nt_deform_solver *s)
 static double excess(nt_deform_solver *s, double a, double e, int held)
 {
     nt_deform_edges list;
-    if (!edges_of(s, a, e, &list) || --s->left < 0)
+    if (!edges_of(s, a, e, &list) || !nt_deform_may_mesh(s))
         return NAN;
     nt_deform_move(s, list.at, list.count - 1, a);
     return newton(s, held) == NT_OK ? end_gap(s) / s->sample->range - 1.0 : (double)NAN;

@@ -60,7 +60,7 @@ static double without_pressure(const nt_plan *plan, double nearest)
     double rest = 0.0;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (!nt_term_rows[term]->pressure)
-            rest += nt_plan_law_limit(plan, term, nearest, plan->demand.quantity);
+            rest += nt_plan_law_limit(plan, term, nearest, plan->quantity);
     return rest;
 }
 
@@ -75,13 +75,13 @@ static double spread_of_radii(const nt_plan *plan)
 /* Whether it takes tables of many radii: one would take most of the demand. */
 static int takes_relief(const nt_plan *plan)
 {
-    return plan->relief.room && spread_of_radii(plan) > UNFELT * plan->demand.relative_accuracy;
+    return plan->relief.room && spread_of_radii(plan) > UNFELT * plan->accuracy;
 }
 
 /* All that a table does not know, as a share of the demand. */
 static double other_errors(const nt_plan *plan, double nearest, int felt)
 {
-    const double lost = without_pressure(plan, nearest) + nt_plan_table_error(plan, plan->demand.quantity);
+    const double lost = without_pressure(plan, nearest) + nt_plan_table_error(plan, plan->quantity);
     const double error = felt ? nt_plan_share(plan, lost) : 0.0;
     return error + (takes_relief(plan) ? 0.0 : spread_of_radii(plan));
 }
@@ -107,20 +107,16 @@ static void describe(nt_plan *plan, double error)
     plan->bound.force_error = error;
 }
 
-static nt_status refuse(nt_problem *problem, nt_problem reason)
-{
-    if (problem)
-        *problem = reason;
-    return NT_E_RANGE;
-}
-
 /* What no table of the plan can be made for. */
 static nt_status check(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     const nt_shape_kind kind = plan->shape.kind;
     const int round = kind == NT_SHAPE_PARABOLOID || kind == NT_SHAPE_SPHERE;
     if (!round && !(kind == NT_SHAPE_BLUNTED && adheres(plan)))
-        return refuse(problem, (nt_problem){"tip.shape", "", scene->tip.shape, 0.0, 1.0});
+        return nt_problem_refuse(
+            problem, nt_problem_coded(NT_PROBLEM_DEFORMS_BEFORE_SHAPE,
+                                      nt_problem_of("tip.shape", nt_scene_field("tip.shape")->unit, scene->tip.shape,
+                                                    NT_SHAPE_PARABOLOID, NT_SHAPE_SPHERE)));
     return NT_OK;
 }
 
@@ -165,9 +161,10 @@ static nt_status make(nt_plan *plan, const nt_scene *scene, const nt_deform_term
                                    .scale =
                                        (sticks ? WEAKER : 1.0) * nt_plan_force_scale(plan, scene->range.maximum_load),
                                    .attracts = sticks,
-                                   .stiffness = plan->demand.quantity == NT_QUANTITY_STIFFNESS,
+                                   .stiffness = plan->quantity == NT_QUANTITY_STIFFNESS,
                                    .stiffness_scale = plan->scale,
                                    .radius_scale = of->radius_scale,
+                                   .meshes = of->tried->meshes,
                                    .touches = of->touches};
     const nt_status status = nt_deform_table_make(&plan->deformation, &sample, &range);
     if (status != NT_OK || !surrounded)
@@ -229,12 +226,12 @@ nt_status nt_plan_deform_table(nt_plan *plan, const nt_scene *scene, const nt_de
     plan->deformation.ratio = plan->ratio;
     plan->deformation.jump_error =
         tolerance * fmax(isinf(plan->deformation.touch) ? 0.0 : fabs(plan->deformation.touch), plan->length);
-    if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
+    if (plan->quantity == NT_QUANTITY_STIFFNESS)
         plan->deformation.jump_error *= STIFF;
     if (plan->deformation.holds)
         plan->deformation.jump_error =
             PARTS * plan->deformation.jump_error + RELEASED * fabs(plan->deformation.release);
-    if (status == NT_OK && held_pull(plan) > fmax(plan->demand.relative_accuracy, tolerance) * plan->scale)
+    if (status == NT_OK && held_pull(plan) > fmax(plan->accuracy, tolerance) * plan->scale)
         status = NT_E_NO_CONVERGENCE;
     return status;
 }
@@ -257,7 +254,7 @@ static nt_status compose(nt_plan *plan, const nt_scene *scene, double error, nt_
         return nt_plan_deform_adhere(plan, scene, error, problem);
     describe(plan, error);
     if (budget > 0.0 && plan->cost > budget * NT_BUDGET_ROUNDS)
-        return refuse(problem, (nt_problem){"demand.budget", "", budget, plan->cost, 1e9});
+        return nt_problem_refuse(problem, nt_demand_budget(budget, plan->cost));
     nt_deform_facts(plan, scene->range.maximum_load);
     return NT_OK;
 }
@@ -266,8 +263,9 @@ static nt_status compose(nt_plan *plan, const nt_scene *scene, double error, nt_
 static nt_status refuse_modulus(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     const double E = scene->sample.youngs_modulus;
-    const double stiffer = E * plan->elastic_number / fmax(plan->demand.relative_accuracy, FINEST);
-    return refuse(problem, (nt_problem){"sample.youngs_modulus", "Pa", E, fmin(fmax(stiffer, E), 1e13), 1e13});
+    const double stiffer = E * plan->elastic_number / fmax(plan->accuracy, FINEST);
+    return nt_problem_refuse(problem,
+                             nt_problem_of("sample.youngs_modulus", "Pa", E, fmin(fmax(stiffer, E), 1e13), 1e13));
 }
 
 /* The finest tolerance that was measured: where a law ends, as a brush, the mesh only nearly knows where. */
@@ -276,7 +274,7 @@ static double finest_of(const nt_plan *plan, const nt_scene *scene)
     const nt_deform_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
     const nt_deform_sample sample = nt_deform_sample_of(&in, scene, NT_DEFORM_FARTHEST);
     const double finest = sample.end_count > 0 ? ENDED * FINEST : FINEST;
-    return plan->demand.quantity == NT_QUANTITY_STIFFNESS ? FLAT * FINEST : finest;
+    return plan->quantity == NT_QUANTITY_STIFFNESS ? FLAT * FINEST : finest;
 }
 
 /* Of the folds: where the surface jumps is known to a distance. */
@@ -296,32 +294,33 @@ static void take_worst(nt_plan *plan, const nt_deform_worst *worst)
     plan->maximum_stiffness = fmax(plan->maximum_stiffness, worst->maximum_stiffness);
 }
 
-/* With one tolerance; `error`: of all that is in no table, as a share of the demand. */
-static nt_status deform_within(nt_plan *plan, const nt_scene *scene, const nt_deform_wanted *of, double error,
-                               nt_problem *problem)
+/* With one tolerance, from a plan that has no table yet; `error`: of all that is in no table, as a share of the demand.
+ */
+static nt_status deform_within(const nt_plan *plan, const nt_scene *scene, const nt_deform_wanted *of, double error,
+                               nt_plan *made, nt_problem *problem)
 {
     nt_problem reason = {0};
     nt_deform_worst worst = {0};
-    plan->relief.count = 0;
-    if (nt_plan_deform_table(plan, scene, of) != NT_OK)
-        return refuse_modulus(plan, scene, problem);
+    nt_plan_copy(made, plan);
+    nt_status status = nt_plan_deform_table(made, scene, of);
     const double most = BETWEEN / (1.0 - BETWEEN) * PARTS * of->tolerance;
-    if (takes_relief(plan) && nt_plan_deform_over(plan, scene, of, most, &worst, &reason) != NT_OK)
-        return reason.field ? refuse(problem, reason) : refuse_modulus(plan, scene, problem);
-    plan->demand.quantity = of->quantity;
-    const nt_status status = compose(plan, scene, error + PARTS * of->tolerance + worst.error, &reason);
-    if (status == NT_OK) {
-        take_worst(plan, &worst);
-        plan->bound.force_error = fmax(plan->bound.force_error, error + error_of_folds(plan, of));
-        return NT_OK;
-    }
-    return reason.field ? refuse(problem, reason) : refuse_modulus(plan, scene, problem);
+    if (status == NT_OK && takes_relief(made))
+        status = nt_plan_deform_over(made, scene, of, most, &worst, &reason);
+    made->quantity = of->quantity; /* the tables are made */
+    if (status == NT_OK)
+        status = compose(made, scene, error + PARTS * of->tolerance + worst.error, &reason);
+    if (status != NT_OK)
+        return reason.field ? nt_problem_refuse(problem, reason) : refuse_modulus(plan, scene, problem);
+    take_worst(made, &worst);
+    made->bound.force_error = fmax(made->bound.force_error, error + error_of_folds(made, of));
+    return NT_OK;
 }
 
 /* Tables are of forces, whatever is demanded. */
-static nt_status deform(nt_plan *plan, const nt_scene *scene, nt_deform_wanted *of, nt_problem *problem)
+static nt_status deform(const nt_plan *plan, const nt_scene *scene, nt_deform_wanted *of, nt_plan *made,
+                        nt_problem *problem)
 {
-    const double nearest = fmax(scene->range.minimum_gap, 0.0), demanded = plan->demand.relative_accuracy;
+    const double nearest = fmax(scene->range.minimum_gap, 0.0), demanded = plan->accuracy;
     const int felt = of->quantity == NT_QUANTITY_FORCE || of->quantity == NT_QUANTITY_STIFFNESS;
     const int surrounded = nt_plan_is_surrounded(plan, scene);
     const double others = other_errors(plan, nearest, felt) + (surrounded ? 0.0 : of->around);
@@ -329,46 +328,45 @@ static nt_status deform(nt_plan *plan, const nt_scene *scene, nt_deform_wanted *
     const double left = (demanded > 0.0 ? demanded - others : fmin(UNASKED - others, PLENTY * PARTS * finest)) / PARTS;
     const double alone = takes_relief(plan) ? 1.0 - BETWEEN : 1.0;
     const double share = alone * (adheres(plan) && !surrounded ? LEAVES : 1.0);
-    const double spread = spread_of_radii(plan);
     of->load = NT_DEFORM_DEEPER * scene->range.maximum_load;
     of->finest = share * finest;
     of->tolerance = rung_below(share * left, of->finest);
-    if (!(left >= finest) && others >= WORST && others - spread < demanded)
-        return refuse(problem, (nt_problem){NT_DEFORM_SPREAD, "m", plan->radii->maximum, plan->contact.radius,
-                                            plan->contact.radius * (1.0 + demanded)});
+    if (!(left >= finest) && others >= WORST && others - spread_of_radii(plan) < demanded)
+        return nt_problem_refuse(problem, nt_deform_spread(plan->radii->maximum, plan->contact.radius,
+                                                           plan->contact.radius * (1.0 + demanded)));
     if (!(left >= finest))
-        return refuse(problem, (nt_problem){"demand.relative_accuracy", "", demanded,
-                                            (others + PARTS * finest) * (1.0 + 1e-9), 0.5});
-    nt_status status = deform_within(plan, scene, of, others, problem);
-    const double error = plan->bound.force_error - others;
+        return nt_problem_refuse(problem, nt_demand_accuracy(demanded, (others + PARTS * finest) * (1.0 + 1e-9)));
+    const nt_status status = deform_within(plan, scene, of, others, made, problem);
+    const double error = made->bound.force_error - others;
     if (status != NT_OK || !(demanded > 0.0) || others + error <= demanded)
         return status;
     of->tolerance = rung_below(of->tolerance * INSIDE * (demanded - others) / error, of->finest); /* of folds */
-    plan->demand.quantity = NT_QUANTITY_FORCE;
-    plan->scale = nt_plan_scale_of(plan, scene->range.maximum_load);
-    return deform_within(plan, scene, of, others, problem);
+    return deform_within(plan, scene, of, others, made, problem);
 }
 
-nt_status nt_plan_deform(nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried, nt_problem *problem)
+nt_status nt_plan_deform(const nt_plan *plan, const nt_scene *scene, double accuracy, nt_deform_tried *tried,
+                         nt_plan *made, nt_problem *problem)
 {
-    const double quantity = plan->demand.quantity, load = scene->range.maximum_load;
-    nt_deform_wanted of = {.quantity = (nt_quantity)(int)quantity, .tried = tried};
+    const double load = scene->range.maximum_load;
+    nt_deform_wanted of = {.quantity = plan->quantity, .tried = tried};
     nt_status status = check(plan, scene, problem);
     if (status != NT_OK)
         return status;
+    nt_plan tables;
+    nt_plan_copy(&tables, plan);
+    tables.accuracy = accuracy;
     of.around = adheres(plan) ? nt_plan_around_error(plan, 0) : 0.0;
     if (of.quantity == NT_QUANTITY_RADIUS)
         of.radius_scale = plan->scale;
-    if (quantity != NT_QUANTITY_STIFFNESS) {
-        plan->demand.quantity = NT_QUANTITY_FORCE;
-        plan->scale = nt_plan_scale_of(plan, load);
+    if (of.quantity != NT_QUANTITY_STIFFNESS) {
+        tables.quantity = NT_QUANTITY_FORCE;
+        tables.scale = nt_plan_scale_of(&tables, load);
     }
-    status = deform(plan, scene, &of, problem);
-    plan->demand.quantity = quantity;
-    if (of.quantity == NT_QUANTITY_RADIUS || of.quantity == NT_QUANTITY_FOLDS)
-        plan->scale = of.quantity == NT_QUANTITY_RADIUS ? of.radius_scale : nt_plan_scale_of(plan, load);
-    if (status != NT_OK)
-        plan->deformation.count = plan->deformation.holds = plan->relief.count =
-            0; /* no table: the facts are those of the laws again */
+    status = deform(&tables, scene, &of, made, problem);
+    made->accuracy = plan->accuracy;
+    if (status == NT_OK && of.quantity == NT_QUANTITY_RADIUS)
+        made->scale = of.radius_scale;
+    if (status == NT_OK && of.quantity == NT_QUANTITY_FOLDS)
+        made->scale = nt_plan_scale_of(made, load);
     return status;
 }

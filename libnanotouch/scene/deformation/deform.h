@@ -95,6 +95,7 @@ typedef struct nt_deform_solver {
     double reach;                /* of the law outside an adhesive contact [m] */
     double end;                  /* r^2 - a^2 where its adhesion ends [m^2] */
     int left;                    /* meshes that may still be made */
+    int *meshes;                 /* and by all tables together; NULL: any */
     double end_slope;            /* of the gap there over h0, over ln of it; 0: not known [-] */
     double share;                /* of the law that acts, on the way to all of it [-] */
     double kink[NT_DEFORM_ENDS]; /* x of the ends of the law [m^2] */
@@ -102,6 +103,11 @@ typedef struct nt_deform_solver {
     double gap[NT_DEFORM_NODES]; /* [m] */
     double A[NT_DEFORM_NODES + 1][NT_DEFORM_NODES + 1];
 } nt_deform_solver;
+/* Whether another mesh may be made. */
+static inline int nt_deform_may_mesh(nt_deform_solver *s)
+{
+    return --s->left > 0 && (!s->meshes || --*s->meshes > 0);
+}
 /* The law of the sample at a gap [m]. */
 static inline nt_pressure nt_deform_law(const nt_deform_solver *s, double gap)
 {
@@ -165,6 +171,7 @@ typedef struct nt_deform_range {
     int stiffness;            /* k is held to the tolerance, too, over max(|k|, stiffness_scale); a finer mesh */
     double stiffness_scale;   /* [N/m] */
     double radius_scale;      /* above 0: so is a, over max(a, radius_scale) [m] */
+    int *meshes;              /* nt_deform_tried */
     int touches;              /* goes on to where the bodies touch, at a larger load, too */
 } nt_deform_range;
 nt_status nt_deform_table_make(nt_deform_table *table, const nt_deform_sample *sample, const nt_deform_range *range);
@@ -205,10 +212,9 @@ nt_status nt_plan_deform_compose(nt_plan *plan, const nt_scene *scene, double wo
 /* adhere.c: the contact of that. */
 nt_status nt_plan_deform_contact(nt_plan *plan, const nt_scene *scene, double work_of_adhesion);
 
-/* What a plan says that is refused because no one kind of table spans the effective radii of its surface. */
-#define NT_DEFORM_SPREAD                                                                                               \
-    "surface (the soft sample deforms otherwise at the effective radius of some of its places than at the tip's own, " \
-    "and no one plan spans both; a smoother surface or another tip has less spread)"
+/* radii.c: a refusal, because no one kind of table spans the effective radii of a surface: one that has none, and those
+ * that have [m]. */
+nt_problem nt_deform_spread(double radius, double minimum, double maximum);
 
 /* radii.c: what the tables of all effective radii of a surface come to. */
 typedef struct nt_deform_worst {

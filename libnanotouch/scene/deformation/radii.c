@@ -110,7 +110,7 @@ static double over(double error, double value, double scale)
 static double difference(const nt_plan *plan, const nt_deform_wanted *of, const nt_law_value *found,
                          const nt_law_value *truth)
 {
-    if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
+    if (plan->quantity == NT_QUANTITY_STIFFNESS)
         return over(found->k - truth->k, truth->k, plan->scale);
     const double error = over(found->F - truth->F, truth->F, plan->scale);
     return of->radius_scale > 0.0 ? fmax(error, over(found->a - truth->a, truth->a, of->radius_scale)) : error;
@@ -146,7 +146,7 @@ static double error_of(const relief_maker *m, const nt_deform_table *table, doub
             const double from = table->node[i - 1].v, share = (double)j / OF_EACH;
             const double gap = gap_of(table, part, from + share * (table->node[i].v - from));
             const nt_law_value truth = nt_deform_around(m->plan, table, attached, gap);
-            const int sharp = part < 0 || attached || m->plan->demand.quantity == NT_QUANTITY_STIFFNESS;
+            const int sharp = part < 0 || attached || m->plan->quantity == NT_QUANTITY_STIFFNESS;
             if (truth.F > load || (sharp && near_fold(m->plan, table, gap - fold, FAR * moved)))
                 continue;
             const nt_law_value found = nt_deform_relief_at(m->plan, &place, attached, gap).law;
@@ -220,26 +220,25 @@ static void find_limit(relief_maker *m)
     }
 }
 
+nt_problem nt_deform_spread(double radius, double minimum, double maximum)
+{
+    return nt_problem_coded(NT_PROBLEM_SPREAD, nt_problem_of("surface", "m", radius, minimum, maximum));
+}
+
 /* Where the tip's own radius has no contact either, it is no matter of the surface. */
 static nt_status refuse(relief_maker *m, nt_problem *problem)
 {
     if (!problem || m->missing == m->plan->contact.radius)
         return NT_E_RANGE;
     find_limit(m);
-    *problem = (nt_problem){NT_DEFORM_SPREAD, "m", m->missing, m->low, m->high};
-    return NT_E_RANGE;
+    return nt_problem_refuse(problem, nt_deform_spread(m->missing, m->low, m->high));
 }
 
 /* No more tables fit: a looser demand is kept by those there are. */
 static nt_status refuse_error(const relief_maker *m, double most, nt_problem *problem)
 {
-    int count = 0;
-    const nt_field *field = nt_demand_fields(&count); /* the first is the accuracy */
-    const double demanded = m->plan->demand.relative_accuracy;
-    if (problem)
-        *problem = (nt_problem){field->name, field->unit, demanded,
-                                fmin(demanded * m->worst->error / most, field->maximum), field->maximum};
-    return NT_E_RANGE;
+    const double demanded = m->plan->accuracy;
+    return nt_problem_refuse(problem, nt_demand_accuracy(demanded, fmin(demanded * m->worst->error / most, WORST)));
 }
 
 nt_status nt_plan_deform_over(nt_plan *plan, const nt_scene *scene, const nt_deform_wanted *of, double most,

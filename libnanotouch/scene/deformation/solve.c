@@ -137,7 +137,7 @@ static nt_status newton(nt_deform_solver *s, nt_deform_hold hold, double value)
 static nt_status settle(nt_deform_solver *s, nt_deform_hold hold, double value)
 {
     nt_deform_edges list;
-    for (int i = 0; i < MESHES && --s->left > 0; ++i) {
+    for (int i = 0; i < MESHES && nt_deform_may_mesh(s); ++i) {
         s->graded = i >= TWICE;
         const nt_status status = newton(s, hold, value);
         if (status != NT_OK)

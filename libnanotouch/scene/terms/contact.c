@@ -111,7 +111,7 @@ static void offer(const nt_plan *plan, nt_plan_options *options, nt_form form, d
 static double rounding(const nt_plan *plan, double more)
 {
     const int is_root = plan->source != NT_ADHESION_NONE &&
-                        (plan->demand.quantity == NT_QUANTITY_STIFFNESS || plan->demand.quantity == NT_QUANTITY_RADIUS);
+                        (plan->quantity == NT_QUANTITY_STIFFNESS || plan->quantity == NT_QUANTITY_RADIUS);
     return (is_root ? ROOTS : ROUNDING) * fmax(more, 1.0);
 }
 
@@ -130,7 +130,7 @@ static double curved_contact(const nt_plan *plan, double more)
 {
     if (!nt_plan_is_curved(plan))
         return 0.0;
-    if (plan->demand.quantity == NT_QUANTITY_FOLDS)
+    if (plan->quantity == NT_QUANTITY_FOLDS)
         return nt_plan_share(plan, nt_plan_curvature_shift(plan));
     return more * NT_SAMPLED * nt_plan_curvature_distance(plan);
 }
@@ -144,7 +144,7 @@ static void offer_local(const nt_plan *plan, nt_plan_options *options, double mo
         return;
     }
     if (plan->bank) {
-        const double error = nt_plan_bank_error(plan, plan->demand.quantity);
+        const double error = nt_plan_bank_error(plan, plan->quantity);
         offer(plan, options, NT_FORM_LOCAL, more * error + rounding(plan, more));
     }
     offer(plan, options, NT_FORM_LOCAL_EXACT, rounding(plan, more));
@@ -169,7 +169,7 @@ static double table_error(const nt_plan *plan, nt_quantity quantity)
 /* Contact of tips that adhesion makes Maugis-Dugdale's. */
 static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     const double table = table_error(plan, quantity);
     const int hertz_shape = plan->shape.kind == NT_SHAPE_PARABOLOID;
     if (hertz_shape && quantity == NT_QUANTITY_FORCE && plan->demand.force_floor > 0.0)
@@ -219,9 +219,9 @@ static double more_stiffness(const nt_plan *plan)
  * max(X_c, S)/max(X, S) is largest at either end of X_c. */
 static double more_than_contact(const nt_plan *plan, const nt_scene *scene)
 {
-    if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
+    if (plan->quantity == NT_QUANTITY_STIFFNESS)
         return more_stiffness(plan);
-    if (plan->demand.quantity != NT_QUANTITY_FORCE)
+    if (plan->quantity != NT_QUANTITY_FORCE)
         return 1.0;
     const double pull = opposing(plan), sharpest = plan->radii ? plan->radii->minimum / plan->contact.radius : 1.0;
     const double push = nt_plan_beside_at(plan, 0.0).F * fmin(sharpest, 1.0), S = plan->scale;
@@ -234,7 +234,7 @@ static double more_than_contact(const nt_plan *plan, const nt_scene *scene)
 /* A form other than the fullest of a contact without adhesion, which has no folds. */
 static void offer_simpler(const nt_plan *plan, nt_plan_options *options, nt_form form, double more)
 {
-    const double error = plan->demand.quantity == NT_QUANTITY_FOLDS ? 0.0 : nt_plan_contact_distance(plan, form);
+    const double error = plan->quantity == NT_QUANTITY_FOLDS ? 0.0 : nt_plan_contact_distance(plan, form);
     offer(plan, options, form, more * NT_SAMPLED * error + rounding(plan, more));
 }
 

@@ -20,7 +20,7 @@ static nt_status tabulate(void *law, const nt_scene *scene, int place, nt_proble
     *table = none;
     if (custom->name[0] == '\0')
         return NT_OK;
-    nt_problem found = {fields[place][0], "", 0.0, 0.0, 0.0};
+    nt_problem found = {.field = fields[place][0], .unit = ""};
     nt_status status = NT_E_ARGUMENT;
     if (custom->law && custom->bound && memchr(custom->name, '\0', NT_CUSTOM_NAME)) {
         memcpy(table->name, custom->name, strlen(custom->name) + 1u);

@@ -189,7 +189,7 @@ static nt_status build(builder *b, double hold)
     const double first = b->custom->bound(b->custom->context, hold);
     double end = 2.0 * hold;
     if (!isfinite(first)) {
-        *b->problem = (nt_problem){NULL, "N", first, 0.0, INFINITY};
+        *b->problem = nt_problem_of(NULL, "N", first, 0.0, INFINITY);
         return NT_E_RANGE;
     }
     while (end < FARTHEST && !(b->custom->bound(b->custom->context, end) <= END * fmin(first, b->felt)))
@@ -235,7 +235,7 @@ static nt_status check_stated(const builder *b, double stated, double force)
 {
     if (stated >= force * (1.0 - BOUND_HOLDS) && isfinite(stated))
         return NT_OK;
-    *b->problem = (nt_problem){NULL, "N", stated, force, INFINITY};
+    *b->problem = nt_problem_of(NULL, "N", stated, force, INFINITY);
     return NT_E_RANGE;
 }
 

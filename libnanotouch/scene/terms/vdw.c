@@ -53,7 +53,7 @@ static nt_pressure pressure(const void *law, double gap)
 /* Without adhesion there is no w to stand for it. The larger of cone and punch: H tan^2 psi/(6 s), H R^2/(6 s^3). */
 static void warn(nt_plan *plan, const nt_scene *scene)
 {
-    const nt_quantity quantity = plan->demand.quantity;
+    const nt_quantity quantity = plan->quantity;
     const int felt = quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS;
     if (has_tail(scene) || plan->source != NT_ADHESION_NONE || !felt)
         return;
@@ -61,7 +61,7 @@ static void warn(nt_plan *plan, const nt_scene *scene)
                  H = scene->adhesion.hamaker_constant;
     const double t = tan(scene->tip.half_angle), R = scene->tip.radius;
     const double force = scene->tip.shape == NT_SHAPE_CONE ? H * t * t / (6.0 * s) : H * R * R / (6.0 * s * s * s);
-    const double least = plan->demand.relative_accuracy * nt_plan_force_scale(plan, scene->range.maximum_load);
+    const double least = plan->accuracy * nt_plan_force_scale(plan, scene->range.maximum_load);
     if (force > least)
         nt_plan_add_warning(plan, (nt_plan_warning){"van der Waals force of this shape, left out: it has no law here",
                                                     "N", force, least});

@@ -30,7 +30,7 @@ PARAMETERS = (
 def branches() -> tuple[Path, Path]:
     """Approach and retraction of the paper's probe over its silicon."""
     scene, rig = presets.paper_silicon()
-    plan = scene.plan(relative_accuracy=0.0)  # everything on, exact
+    plan = scene.plan(bound="exact")  # everything on, exact
     near, deepest = 1.5e-9, 0.5e-9
     gap = np.concatenate([np.geomspace(FARTHEST.value, near, 4000), np.linspace(near, -deepest, SAMPLES)[1:]])
     way_in = plan.run(gap, "approach")

@@ -54,7 +54,7 @@ def trade(quick: bool, progress: Callable[[float], None] = lambda done: None) ->
 
 
 def _rows(name: str, scene: Scene, accuracies: tuple[float, ...]) -> Iterator[Row]:
-    exact = scene.plan(relative_accuracy=0.0)
+    exact = scene.plan(bound="exact")
     gaps = _gaps(exact, scene)
     paths = {"approach": gaps[::-1], "retract": gaps}
     truth = {history: np.asarray(reference.force(scene, path, history=history)) for history, path in paths.items()}  # type: ignore[arg-type]

@@ -341,7 +341,7 @@ def _planned(name: str, scene: Scene, gaps: Floats) -> Any:
 
 @functools.lru_cache(maxsize=16)
 def _full_plan(frozen: _Frozen) -> Plan:
-    return frozen.scene.plan(relative_accuracy=0.0)
+    return frozen.scene.plan(bound="exact")
 
 
 class _Frozen:

@@ -33,6 +33,7 @@ else:
     SceneFields = DemandFields = RigFields = SettingsFields = Description
 
 Quantity = Literal["force", "stiffness", "radius", "folds"]
+Bound = Literal["kept", "exact", "any"]
 
 
 class Scene(SceneFields, core_type=_core.Scene):
@@ -176,20 +177,21 @@ class Scene(SceneFields, core_type=_core.Scene):
 
     def plan(
         self,
-        relative_accuracy: float = 0.01,
+        relative_accuracy: float | Demand = 0.01,
         force_floor: float = 0.0,
         quantity: Quantity = "force",
         rig: Rig | None = None,
         budget: float | None = None,
         surface: Surface | None = None,
+        bound: Bound = "kept",
     ) -> Plan:
         """Decide what has to be computed, at the least cost that keeps the demand over the whole ``range``.
 
         Parameters
         ----------
-        relative_accuracy : float
-            Largest error of the quantity over max(\\|it\\|, its scale), for a force the pull-off force; 0: everything
-            on, exact.
+        relative_accuracy : float or Demand
+            Largest error of the quantity over max(\\|it\\|, its scale), for a force the pull-off force. A `Demand` stands
+            for itself and for ``force_floor``, ``quantity``, ``budget`` and ``bound``.
         force_floor : float
             Forces below this cannot be felt [N].
         quantity : str
@@ -201,6 +203,10 @@ class Scene(SceneFields, core_type=_core.Scene):
             What one evaluation may cost, in Hertz evaluations.
         surface : Surface, optional
             The topography, dilated by the tip; otherwise a flat at z = 0.
+        bound : str
+            ``"kept"``: the plan's bound is no more than `relative_accuracy`, or there is no plan. ``"exact"``: every law
+            in full, with the bound of that. ``"any"``: what is demanded or else the least bound there is; where none is
+            known it is infinite, and a warning says so. No real slave is armed with such a plan.
 
         Raises
         ------
@@ -211,12 +217,17 @@ class Scene(SceneFields, core_type=_core.Scene):
             raise InvalidValue("budget = 0: it must be above 0; None: whatever it costs")
         from nanotouch.scene.plan import Plan  # the next layer, which needs this one: a method for convenience
 
+        if isinstance(relative_accuracy, Demand):
+            if (force_floor, quantity, budget, bound) != (0.0, "force", None, "kept"):
+                raise TypeError("force_floor, quantity, budget and bound are those of the Demand")
+            return Plan.make(self, relative_accuracy, rig, surface)
         demand = Demand(
             demand={
                 "relative_accuracy": relative_accuracy,
                 "force_floor": force_floor,
                 "quantity": quantity,
                 "budget": budget or 0.0,
+                "bound": bound,
             }
         )
         return Plan.make(self, demand, rig, surface)

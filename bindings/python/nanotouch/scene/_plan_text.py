@@ -145,6 +145,8 @@ def _within(facts: dict[str, Any]) -> str:
     quantity = facts["quantity"]
     if math.isnan(facts["bound"]):
         return f"{_QUANTITIES[quantity]} without a bound"
+    if math.isinf(facts["bound"]):
+        return f"{_QUANTITIES[quantity]} with a bound that is not known"
     text = f"{_QUANTITIES[quantity]} within {_percent(facts['bound'])}"
     scale = in_words(facts["scale"], _UNITS[quantity])
     pulled = ", the pull-off" if quantity == "force" and facts["scale"] == facts["pull_off_force"] else ""

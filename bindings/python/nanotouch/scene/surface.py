@@ -313,7 +313,7 @@ def _pull_off_of(scene: Scene) -> _properties.PullOff:
         made_of = {"work_of_adhesion": work, "youngs_modulus": modulus}
         given = {name: np.full((4, 4), value) for name, value in made_of.items() if value is not None}
         surface = Surface(level, **given)  # type: ignore[arg-type]
-        return scene.plan(0.0, surface=surface).pull_off_force
+        return scene.plan(bound="exact", surface=surface).pull_off_force
 
     return pull_off
 

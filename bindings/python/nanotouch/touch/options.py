@@ -13,7 +13,7 @@ from nanotouch._arrays import check_between
 from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.manipulation import Particles, Rod
-from nanotouch.scene import Rig, Scene, Settings
+from nanotouch.scene import Bound, Rig, Scene, Settings
 from nanotouch.scene.surface import Surface
 from nanotouch.touch import margins
 from nanotouch.touch._control import Control, ControlLaw, choose_control
@@ -33,6 +33,7 @@ ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
 
 Pace = Literal["free", "wall", "hard"]
 RING_CAPACITY = 65536
+BOUNDS: tuple[Bound, ...] = get_args(Bound)
 PACES: tuple[Pace, ...] = get_args(Pace)
 PACE_REASONS: dict[Pace, str] = {
     "free": "free pace, for nothing of it is real",
@@ -66,6 +67,9 @@ class Options(TypedDict, total=False):
     """height of the tip above the surface at the start; 0.1 um [m]"""
     relative_accuracy: float
     """largest relative error of the planned force; 0.01"""
+    bound: Bound
+    """what the bound of that force is held to, as in :meth:`nanotouch.Scene.plan`; "kept". A real slave is armed with a
+    bound that is known, and with no other"""
     minimum_margin: float
     """refuse to open closer to the stability limit than this; 1.5"""
     preflight: bool
@@ -148,7 +152,8 @@ def settings_with(
     _choose(wanted, options.get("rate"), gains, options.get("delay", 0.0))
     choose_control(wanted, options.get("control", "default"))
     if not is_scaled:
-        plan = scene.plan(relative_accuracy=float(options.get("relative_accuracy", 0.01)), surface=surface)
+        accuracy, bound = float(options.get("relative_accuracy", 0.01)), options.get("bound", "kept")
+        plan = scene.plan(accuracy, surface=surface, bound=bound)
         wanted.gains.alpha_f = margins.felt_alpha_f(rig, wanted, plan, load)
     return wanted
 
@@ -158,6 +163,13 @@ def checked_seed(seed: int) -> int:
     if not 0 <= index(seed) < 2**64:
         raise InvalidValue(f"seed = {seed}: valid is 0 .. 2^64 - 1")
     return index(seed)
+
+
+def checked_bound(bound: Bound) -> Bound:
+    """One of those that there are."""
+    if bound not in BOUNDS:
+        raise InvalidValue(f"bound {bound!r}: valid are {', '.join(BOUNDS)}")
+    return bound
 
 
 def check_options(options: Mapping[str, Any]) -> None:

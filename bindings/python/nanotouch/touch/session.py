@@ -29,7 +29,7 @@ from nanotouch.touch.faults import Faults
 from nanotouch.touch.hal import Halves, halves_of
 from nanotouch.touch.margins import Calm, Margins
 from nanotouch.touch.operator import Hold, Input, core_input, script_for, stretched
-from nanotouch.touch.options import Options, Pace, Progress, check_options, checked_seed, settings_with
+from nanotouch.touch.options import BOUNDS, Options, Pace, Progress, check_options, checked_bound, checked_seed, settings_with
 from nanotouch.touch.options import settings_for_path as settings_for_path
 from nanotouch.touch.record import Metadata, Recording, Writer
 from nanotouch.touch.supervisor import REASONS, Guarantee
@@ -93,6 +93,7 @@ class Session(Runs, Frozen):
         self.seed = checked_seed(options.get("seed", 1))
         self.minimum_margin = float(options.get("minimum_margin", 1.5))
         self.relative_accuracy = float(options.get("relative_accuracy", 0.01))
+        self.bound = checked_bound(options.get("bound", "kept"))
         self.clearance = options.get("clearance", 0.1e-6)
         self.path = tuple(checked_path(mode, path, surface))
         heights = self.path_heights()[1]
@@ -113,7 +114,7 @@ class Session(Runs, Frozen):
                     "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
                     "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
                     "minimum_margin": self.minimum_margin, "relative_accuracy": self.relative_accuracy,
-                    "preflight": options.get("preflight", True), "law": control if callable(control) else None,
+                    "bound": BOUNDS.index(self.bound), "preflight": options.get("preflight", True), "law": control if callable(control) else None,
                     "master": options.get("master"), "slave": options.get("slave"),
                     "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
                     **plant_options(options.get("probe_model", "auto"), options.get("substep"), faults),
@@ -306,6 +307,7 @@ class Session(Runs, Frozen):
             "master_start": self.core.master_start,
             "control": self.control,
             "relative_accuracy": self.relative_accuracy,
+            "bound": self.bound,
             "amounts": self._amounts,
             "tare": list(self.core.tare),
             "events": self._asked(),
