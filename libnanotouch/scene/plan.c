@@ -198,8 +198,7 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_deform_tried *t
         const double within = plan->demand.bound == NT_BOUND_KEPT ? demanded : 0.0;
         status =
             take_rigid(plan, &options, within, errs, problem); /* a demand or budget that nothing keeps is refused */
-        const int is_exact = plan->demand.bound == NT_BOUND_EXACT && errs <= WORST;
-        if (status != NT_OK || plan->properties || is_exact || deform_at_best(plan, scene, tried, &made) != NT_OK)
+        if (status != NT_OK || plan->properties || deform_at_best(plan, scene, tried, &made) != NT_OK)
             return status;
     }
     nt_plan_copy(plan, &made);

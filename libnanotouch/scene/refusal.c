@@ -14,8 +14,8 @@
 enum {
     SAID = 3,
     FARTHER_TRIES = 24,
-    MESHES = 600,
-    MESHES_OF_ALL = 1500
+    MESHES = 400,
+    MESHES_OF_ALL = 1200
 }; /* of one plan that is tried; of all changes */
 
 /* The law that presses most on a sample that does not keep still, or whose pull it jumps to. */

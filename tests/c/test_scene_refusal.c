@@ -102,12 +102,106 @@ static void a_budget_names_a_cost(void **state)
     assert_int_equal(ask(&scene, demand, NULL), NT_OK);
 }
 
+/* A dry silicon tip on a polymer, whose van der Waals force takes most of a small work of adhesion. */
+static nt_scene polymer(double youngs_modulus)
+{
+    nt_scene scene = nt_scene_defaults();
+    scene.tip.radius = 10e-9;
+    scene.sample.youngs_modulus = youngs_modulus;
+    scene.sample.poisson_ratio = 0.35;
+    scene.medium.relative_humidity = 0.0;
+    scene.adhesion.work_of_adhesion = 0.05;
+    scene.adhesion.hamaker_constant = 1e-19;
+    return scene;
+}
+
+/* A repulsive hydration presses most, but van der Waals is what pulls. */
+static nt_scene film(void)
+{
+    nt_scene scene = nt_scene_defaults();
+    scene.tip.radius = 20e-9;
+    scene.sample = (nt_specimen){.youngs_modulus = 2e7, .poisson_ratio = 0.45, .thickness = 4e-9};
+    scene.medium.kind = NT_MEDIUM_LIQUID;
+    scene.medium.ionic_strength = 150.0;
+    scene.medium.hydration_energy = 0.01;
+    scene.adhesion.work_of_adhesion = 0.0;
+    scene.adhesion.hamaker_constant = 5e-21;
+    scene.range.maximum_load = 2e-9;
+    return scene;
+}
+
+static void set(nt_scene *scene, const nt_remedy *remedy)
+{
+    int count = 0;
+    const nt_field *fields = nt_scene_fields(&count);
+    for (int i = 0; i < count; i++)
+        if (strcmp(fields[i].name, remedy->field) == 0)
+            nt_field_set(&fields[i], scene, remedy->value);
+}
+
+static void one_change_that_is_named_works(void **state)
+{
+    (void)state;
+    const nt_scene scenes[] = {polymer(3e9), polymer(3.5e9), film()};
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        nt_problem problem = {0};
+        nt_scene changed = scenes[i];
+        if (ask_force(&scenes[i], 0.1, &problem) == NT_OK)
+            continue;
+        assert_non_null(problem.remedy.field);
+        assert_string_equal(problem.cause, "van der Waals");
+        set(&changed, &problem.remedy);
+        assert_int_equal(ask_force(&changed, 0.1, NULL), NT_OK);
+        assert_true(plan.bound.force_error <= 0.1);
+    }
+}
+
+/* Nothing keeps it, and it says what can be kept. */
+static void an_error_of_zero_is_refused_as_any_other(void **state)
+{
+    (void)state;
+    const nt_scene scene = nt_scene_defaults();
+    nt_problem problem = {0};
+    assert_int_equal(ask_force(&scene, 0.0, &problem), NT_E_RANGE);
+    assert_int_equal(problem.code, NT_PROBLEM_ACCURACY);
+    assert_true(problem.value == 0.0 && problem.minimum > 1e-13 && problem.minimum < 1e-11);
+    assert_int_equal(ask_force(&scene, problem.minimum, NULL), NT_OK);
+    const nt_demand exact = {.bound = NT_BOUND_EXACT};
+    assert_int_equal(ask(&scene, exact, NULL), NT_OK);
+    assert_true(plan.bound.force_error < 1e-3 && plan.accuracy == 0.0);
+}
+
+/* Where nothing is known there is a force, and the bound says so; where the demand can be kept, it is. */
+static void any_bound_will_do(void **state)
+{
+    (void)state;
+    nt_scene strong = nt_scene_defaults();
+    strong.adhesion.hamaker_constant = 1e-17; /* alone it pulls more than all of w */
+    strong.medium.relative_humidity = 0.0;
+    const nt_scene scenes[] = {polymer(3.5e9), film(), strong}, kept = nt_scene_defaults();
+    const nt_demand any = {.relative_accuracy = 0.01, .bound = NT_BOUND_ANY};
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        assert_int_equal(ask(&scenes[i], any, NULL), NT_OK);
+        int warned = 0;
+        for (int w = 0; w < plan.warning_count; w++)
+            warned |= strstr(plan.warnings[w].text, "no bound is known") != NULL;
+        assert_int_equal(warned, isinf(plan.bound.force_error) != 0);
+        assert_true(isfinite(plan.pull_off_force));
+    }
+    assert_true(isinf(plan.bound.force_error)); /* the last */
+    assert_int_equal(ask(&kept, any, NULL), NT_OK);
+    assert_true(plan.bound.force_error <= 0.01);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_named_is_planned_and_little_less_is_not),
         cmocka_unit_test(a_jump_names_a_gap),
         cmocka_unit_test(a_budget_names_a_cost),
+        cmocka_unit_test(one_change_that_is_named_works),
+        cmocka_unit_test(an_error_of_zero_is_refused_as_any_other),
+        cmocka_unit_test(any_bound_will_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -335,10 +335,41 @@ static void paces_that_a_half_cannot_keep_are_refused(void **state)
     }
 }
 
+/* A real slave is armed with a force whose bound is known, and with no other; a simulated one takes both. */
+static void a_real_slave_wants_a_bound(void **state)
+{
+    (void)state;
+    const nt_backend stage = backend_of(NT_HALF_SLAVE);
+    for (int real = 0; real < 2; real++)
+        for (int known = 0; known < 2; known++) {
+            device d = {.describes_itself = 1, .says = {.can = NT_CAN_FEEL | (real ? NT_IS_REAL : 0u), .axes = 1}};
+            nt_session_setup setup = nt_session_defaults();
+            setup.preflight = 0;
+            setup.rig.stage.axes = 1.0;
+            setup.slave = (nt_hal_choice){&stage, &d};
+            setup.scene.medium.relative_humidity = 0.0;
+            setup.scene.adhesion.hamaker_constant = known ? 1e-21 : 1e-17; /* alone it pulls more than all of w */
+            setup.demand = (nt_demand){.relative_accuracy = 0.3, .bound = NT_BOUND_ANY};
+            nt_session *session = NULL;
+            nt_problem problem = {0};
+            const nt_status status = nt_session_open(&session, &setup, &problem);
+            if (real && !known) {
+                assert_int_equal(status, NT_E_RANGE);
+                assert_int_equal(problem.code, NT_PROBLEM_BOUND_OF_REAL_SLAVE);
+                assert_null(session);
+                assert_null(strchr(d.calls, 'a')); /* never armed */
+            } else {
+                assert_int_equal(status, NT_OK);
+                nt_session_close(session);
+            }
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_held_master_touches),
+        cmocka_unit_test(a_real_slave_wants_a_bound),
         cmocka_unit_test(its_margin_is_that_of_the_stage),
         cmocka_unit_test(its_margin_is_that_of_the_coupling),
         cmocka_unit_test(a_master_of_three_axes_leads_the_tip),
