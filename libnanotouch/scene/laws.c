@@ -107,7 +107,7 @@ static nt_status refuse(const nt_plan *plan, const nt_scene *scene, double share
     const double value = nt_field_get(field, scene);
     nt_problem tail = nt_problem_of(field->name, field->unit, value, 0.0, value * fmax(left, 0.0) / own);
     tail.code = NT_PROBLEM_TAIL;
-    tail.cause = nt_term_rows[strongest]->words.title;
+    tail.cause = nt_term_rows[strongest]->noun;
     return nt_problem_refuse(problem, tail);
 }
 

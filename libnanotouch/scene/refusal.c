@@ -39,7 +39,7 @@ static int strongest(const nt_plan *plan, int pulls)
 
 static const char *name_of(int term)
 {
-    return term == NT_PLAN_CONTACT ? "the forces before contact" : nt_term_rows[term]->words.title;
+    return term == NT_PLAN_CONTACT ? "the forces before contact" : nt_term_rows[term]->noun;
 }
 
 /* Infinite beyond a jump: then it is a pull. */

@@ -82,7 +82,7 @@ static void a_jump_names_a_gap(void **state)
     assert_int_equal(ask_force(&scene, 0.01, &problem), NT_E_RANGE);
     assert_int_equal(problem.code, NT_PROBLEM_JUMPS);
     assert_string_equal(problem.field, "range.minimum_gap");
-    assert_string_equal(problem.cause, "electrostatic");
+    assert_string_equal(problem.cause, "the electrostatic force");
     assert_string_equal(problem.remedy.field, "range.minimum_gap");
     assert_string_equal(problem.unit, "m");
     scene.range.minimum_gap = problem.minimum;

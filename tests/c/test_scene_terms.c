@@ -87,8 +87,7 @@ static void has_words(int term)
         HAS(term, "the words of a form", is_said(words->forms[i].words));
     }
     HAS(term, ".words: has_pressure, as it has a pressure or none", !words->has_pressure == !row->pressure);
-    HAS(term, ".refused, with which a soft sample is refused", !row->pressure || is_said(row->refused.deforms));
-    HAS(term, ".refused, with which a jump is refused", !row->pressure || is_said(row->refused.jumps));
+    HAS(term, ".noun, with which a soft sample is refused", !row->pressure || is_said(row->noun));
     for (int other = 0; other < term; other++)
         HAS(term, "a name of its own", strcmp(words->name, nt_term_words_of(other)->name) != 0);
 }

@@ -180,9 +180,7 @@ def test_a_surface_that_would_jump_is_refused_in_words() -> None:
     flat = Topography(np.zeros((16, 16)), (10e-9, 10e-9))
     scene = sticky(1e12)
     surface = Surface.touched_by(scene, flat, youngs_modulus=np.linspace(1e6, 1e12, 256).reshape(16, 16))
-    with pytest.raises(
-        InvalidValue, match=r"deforms under van der Waals, which cannot be planned here .*: no bound of"
-    ):
+    with pytest.raises(InvalidValue, match=r"deforms under van der Waals before contact\) = 0\.01: none is known"):
         scene.plan(0.01, surface=surface)
 
 
@@ -323,7 +321,7 @@ def test_a_lone_attraction_is_planned_as_its_refusal_says(modulus: float, accura
     """Without adhesion nothing is known beyond the jump: the refusal names a gap before it, and what to give."""
     scene = watery(modulus, 2.5e-6, 1e-9)
     scene.adhesion.hamaker_constant = 1e-21
-    with pytest.raises(InvalidValue, match=r"pulled by van der Waals.*adhesion\.work_of_adhesion") as found:
+    with pytest.raises(InvalidValue, match="pulled by van der Waals") as found:
         scene.plan(accuracy)
     (named,) = re.findall(r"range\.minimum_gap .* valid is (\S+) \.\.", str(found.value))
     away = scene.copy()

@@ -223,7 +223,7 @@ def test_what_cannot_be_felt_is_left_out(name: str, force_floor: float) -> None:
         assert (np.abs(planned - truth) <= allowed).all()
 
 
-@pytest.mark.parametrize("accuracy", [0.3, 1e-3, 1e-7, 0.0])
+@pytest.mark.parametrize("accuracy", [0.3, 1e-3, 1e-7])
 @pytest.mark.parametrize("name", ["silicon_in_air", "mica_in_air", "silicone_rubber"])
 def test_a_probe_adds_its_noise_and_changes_nothing(name: str, accuracy: float) -> None:
     """8 N/m, 33 nm/V and 50 mV peak to peak leave 2.2 nN of noise."""

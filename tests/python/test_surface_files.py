@@ -296,7 +296,7 @@ def test_a_real_map_of_adhesion_is_touched() -> None:
     blunt = {"tip": {"radius": 500e-9}, "range": {"maximum_load": 200e-9}}
     soft = Scene(**DRY | blunt | {"sample": {"youngs_modulus": 2e9}})
     touched = named.touched_by(soft)
-    with pytest.raises(InvalidValue, match="deforms under van der Waals, which cannot be planned here"):
+    with pytest.raises(InvalidValue, match="deforms under van der Waals before contact"):
         soft.plan(surface=touched)
     told = next(warning for warning in soft.plan(bound="exact", surface=touched).warnings if "jumps" in warning.text)
     assert told.value > told.limit == 0.55

@@ -16,7 +16,7 @@ from nanotouch_app.live.sliders import KINDS, OFFERED, Slider
 NUMBER = r"([-+.\deEinfa]+)"
 INACCURATE = re.compile(rf"demand\.relative_accuracy = {NUMBER}\s*: valid is {NUMBER} \.\. ")
 UNSTABLE = re.compile(rf"stability margin \(([^)]*)\) = {NUMBER}: valid is {NUMBER} \.\. ")
-NO_LAW = re.compile(rf"error of (.*), which deforms under it .* = {NUMBER}: valid is 0")
+NO_LAW = re.compile(r"the sample deforms under (.*) before contact\)")
 OTHER = re.compile(r"([a-z]+\.[a-z_]+) = (\S+(?: \S+)?): valid is (.*)$")
 HALVINGS = 20  # of the way to what was asked
 SURE = 0.999  # of what was found is told, so that asking for it works
@@ -32,7 +32,7 @@ def in_words(session: nt.Session, what: str, field: str, value: float, error: Er
         best, wanted = (100.0 * float(found[number]) for number in (2, 1))
         return f"{asked}: known only within {best:.2g} % there, and this session keeps {wanted:.2g} %. {stays}"
     if found := NO_LAW.search(said):
-        law = found[1].split(" on this")[0]
+        law = found[1]
         return f"{asked}: so soft that {law} moves it before contact; no law within the demand. {stays}"
     if found := UNSTABLE.search(said):
         limit = _furthest(old, value, lambda at: _margin(session, field, at) >= session.minimum_margin)

@@ -6,7 +6,7 @@ import { digits, quantity } from "./units.js";
 const NUMBER = "([-+.\\deEinfa]+)";
 const INACCURATE = new RegExp(`demand\\.relative_accuracy = ${NUMBER}\\s*: valid is ${NUMBER} \\.\\. `);
 const UNSTABLE = new RegExp(`margin.*= ${NUMBER}: valid is ${NUMBER} \\.\\. `);
-const NO_LAW = new RegExp(`error of (.*), which deforms under it .* = ${NUMBER}: valid is 0`);
+const NO_LAW = /the sample deforms under (.*) before contact\)/;
 const OTHER = /([a-z]+\.[a-z_]+) = (\S+(?: \S+)?): valid is (.*)$/;
 const HALVINGS = 20, SURE = 0.999; // of the way to what was asked; of what was found is told, so that asking for it works
 const percent = (share) => Number((100 * Number(share)).toPrecision(2));
@@ -18,7 +18,7 @@ export function inWords(host, { field, old, value }, said) {
   let found = INACCURATE.exec(said);
   if (found) return `${asked}: known only within ${percent(found[2])} % there, and this session keeps ${percent(found[1])} %. ${stays}`;
   found = NO_LAW.exec(said);
-  if (found) return `${asked}: so soft that ${found[1].split(" on this")[0]} moves it before contact; no law within the demand. ${stays}`;
+  if (found) return `${asked}: so soft that ${found[1]} moves it before contact; no law within the demand. ${stays}`;
   found = UNSTABLE.exec(said);
   if (found) {
     const limit = furthest(old, value, (at) => host.marginWith(field, at) >= host.leastMargin);

@@ -148,7 +148,7 @@ static nt_problem of_tail(const nt_plan *plan, const nt_scene *scene)
     nt_problem problem =
         nt_problem_of(field->name, field->unit, value, 0.0, value * STRONGEST * w / nt_plan_deform_share(plan));
     problem.code = NT_PROBLEM_DEFORMED_TAIL;
-    problem.cause = nt_term_rows[tail]->words.title;
+    problem.cause = nt_term_rows[tail]->noun;
     return problem;
 }
 

@@ -116,5 +116,5 @@ static const nt_term_form forms[] = {{NT_FORM_TABLE, 1.1, 0.95, "tabulated"}};
     NT_TERM_BESIDE(name_, NULL, full_form, eval, hold, pressure,                                                       \
                    .words = {#name_, #name_, "a law of one's own", NULL, forms, 1, 1}, .limit = limit,                 \
                    .tabulate = tabulate_##name_, .error = error, .edges = edges, .name_of = name_of,                   \
-                   .refused = NT_TERM_REFUSED("a law of its own"));
+                   .noun = "a law of its own");
 NT_TERMS_CUSTOM(CUSTOM)

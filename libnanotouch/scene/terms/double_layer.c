@@ -110,4 +110,4 @@ static const nt_term_form forms[] = {{NT_FORM_ON, 1.2, 1.05, "computed"}};
 NT_TERM_BESIDE(double_layer, prepare, full_form, eval, hold, pressure,
                .words = {"double_layer", "double layer",
                          "linear theory at constant potential (Hogg, Healy, Fuerstenau 1966)", NULL, forms, 1, 1},
-               .limit = limit, .warn = warn, .facts = facts, .refused = NT_TERM_REFUSED("the double layer"));
+               .limit = limit, .warn = warn, .facts = facts, .noun = "the double layer");

@@ -63,4 +63,4 @@ static const nt_term_form forms[] = {
 NT_TERM_BESIDE(electrostatic, prepare, full_form, eval, hold, pressure,
                .words = {"electrostatic", "electrostatic", "conductors at a potential difference (Hudlet 1998)", NULL,
                          forms, 2, 1},
-               .facts = facts, .refused = NT_TERM_REFUSED("the electrostatic force"));
+               .facts = facts, .noun = "the electrostatic force");

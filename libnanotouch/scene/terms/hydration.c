@@ -51,4 +51,4 @@ static const nt_term_form forms[] = {{NT_FORM_ON, 0.25, 0.2, "computed"}};
 NT_TERM_BESIDE(hydration, prepare, full_form, eval, hold, pressure,
                .words = {"hydration", "hydration", "exponential, also hydrophobic (Israelachvili 2011)", NULL, forms, 1,
                          1},
-               .facts = facts, .refused = NT_TERM_REFUSED("hydration"));
+               .facts = facts, .noun = "hydration");

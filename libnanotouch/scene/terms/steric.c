@@ -56,4 +56,4 @@ static const nt_term_form forms[] = {{NT_FORM_ON, 0.4, 0.35, "computed"}};
 
 NT_TERM_BESIDE(steric, prepare, full_form, eval, hold, pressure,
                .words = {"steric", "polymer brush", "scaling law of Alexander and de Gennes", NULL, forms, 1, 1},
-               .facts = facts, .refused = NT_TERM_REFUSED("the brush"));
+               .facts = facts, .noun = "the brush");

@@ -21,17 +21,6 @@ typedef struct nt_term_fact {
 } nt_term_fact;
 enum { NT_TERM_FACTS_MAX = 4 };
 
-/* What a plan says that is refused because the sample deforms under a law, or jumps to its pull. */
-typedef struct nt_term_refused {
-    const char *deforms, *jumps;
-} nt_term_refused;
-
-#define NT_TERM_REFUSED(law)                                                                                           \
-    {"sample.youngs_modulus: the sample is so soft that it deforms under " law                                         \
-     ", which cannot be planned here (stiffen it, weaken the law, or demand less)",                                    \
-     "range.minimum_gap (nearer this soft sample jumps to the tip, pulled by " law                                     \
-     ", and without adhesion what follows is not planned; give the attraction as adhesion.work_of_adhesion)"}
-
 typedef struct nt_term_row {
     nt_term_words words;
 
@@ -53,9 +42,8 @@ typedef struct nt_term_row {
     /* Two flats (terms.h), where words.has_pressure. */
     nt_pressure (*pressure)(const void *law, double gap);
 
-    /* What a plan says that is refused because the sample deforms under it: NT_TERM_REFUSED, by a law with a pressure.
-     */
-    nt_term_refused refused;
+    /* What it is in the sentence of a refusal, as what presses or pulls; of a law with a pressure. */
+    const char *noun;
 
     /* --- Each of these may be NULL --- */
 

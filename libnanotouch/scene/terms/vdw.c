@@ -76,4 +76,4 @@ static const nt_term_form forms[] = {
 NT_TERM_BESIDE(vdw, prepare, full_form, eval, hold, pressure,
                .words = {"vdw", "van der Waals", "Hamaker's sum over sphere, or sphere and cone, and a flat",
                          "adhesion.hamaker_constant", forms, 3, 1},
-               .warn = warn, .refused = NT_TERM_REFUSED("van der Waals"));
+               .warn = warn, .noun = "van der Waals");

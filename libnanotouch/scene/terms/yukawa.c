@@ -72,4 +72,4 @@ static const nt_term_form forms[] = {{NT_FORM_ON, 0.2, 0.2, "computed"}};
 NT_TERM_BESIDE(yukawa, prepare, full_form, eval, hold, pressure,
                .words = {"yukawa", "Yukawa", "screened force of all matter in sphere and flat (Fischbach 2001)", NULL,
                          forms, 1, 1},
-               .facts = facts, .refused = NT_TERM_REFUSED("the Yukawa force"));
+               .facts = facts, .noun = "the Yukawa force");
