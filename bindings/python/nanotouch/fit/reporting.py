@@ -36,7 +36,7 @@ class Sample:
     tip: Any
 
     def youngs_modulus(self, modulus: float, notes: list[str], assumptions: list[str]) -> tuple[float, float, float]:
-        """E from 1/E* = (1 - nu^2)/E + (1 - nu_t^2)/E_t [Pa], d ln E/d ln E* and dE/dnu; NaN if the tip is all of it."""
+        """E from 1/E* = (1 - nu^2)/E + (1 - nu_t^2)/E_t [Pa], d ln E/d ln E*, dE/dnu; NaN if the tip is all of it."""
         ratio = self.poisson_ratio
         if ratio is None or not -1.0 < ratio <= 0.5:
             raise InvalidValue(f"poisson_ratio {ratio}: valid is above -1, up to 0.5")

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, Self, Unpack
+from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, get_args
 
 from nanotouch import _core
 from nanotouch._io.files import toml_tables
@@ -34,6 +34,7 @@ else:
 
 Quantity = Literal["force", "stiffness", "radius", "folds"]
 Bound = Literal["kept", "exact", "any"]
+BOUNDS: tuple[Bound, ...] = get_args(Bound)
 
 
 class Scene(SceneFields, core_type=_core.Scene):
@@ -190,8 +191,8 @@ class Scene(SceneFields, core_type=_core.Scene):
         Parameters
         ----------
         relative_accuracy : float or Demand
-            Largest error of the quantity over max(\\|it\\|, its scale), for a force the pull-off force. A `Demand` stands
-            for itself and for ``force_floor``, ``quantity``, ``budget`` and ``bound``.
+            Largest error of the quantity over max(\\|it\\|, its scale), for a force the pull-off force. A `Demand`
+            stands for all of itself: ``force_floor``, ``quantity``, ``budget`` and ``bound``, too.
         force_floor : float
             Forces below this cannot be felt [N].
         quantity : str
@@ -204,9 +205,9 @@ class Scene(SceneFields, core_type=_core.Scene):
         surface : Surface, optional
             The topography, dilated by the tip; otherwise a flat at z = 0.
         bound : str
-            ``"kept"``: the plan's bound is no more than `relative_accuracy`, or there is no plan. ``"exact"``: every law
-            in full, with the bound of that. ``"any"``: what is demanded or else the least bound there is; where none is
-            known it is infinite, and a warning says so. No real slave is armed with such a plan.
+            ``"kept"``: the plan's bound is no more than `relative_accuracy`, or there is no plan. ``"exact"``: every
+            law in full, with the bound of that. ``"any"``: what is demanded or else the least bound there is; where
+            none is known it is infinite, and a warning says so. No real slave is armed with such a plan.
 
         Raises
         ------

@@ -13,7 +13,7 @@ from nanotouch._arrays import check_between
 from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.manipulation import Particles, Rod
-from nanotouch.scene import Bound, Rig, Scene, Settings
+from nanotouch.scene import BOUNDS, Bound, Rig, Scene, Settings
 from nanotouch.scene.surface import Surface
 from nanotouch.touch import margins
 from nanotouch.touch._control import Control, ControlLaw, choose_control
@@ -33,7 +33,6 @@ ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
 
 Pace = Literal["free", "wall", "hard"]
 RING_CAPACITY = 65536
-BOUNDS: tuple[Bound, ...] = get_args(Bound)
 PACES: tuple[Pace, ...] = get_args(Pace)
 PACE_REASONS: dict[Pace, str] = {
     "free": "free pace, for nothing of it is real",
@@ -152,7 +151,7 @@ def settings_with(
     _choose(wanted, options.get("rate"), gains, options.get("delay", 0.0))
     choose_control(wanted, options.get("control", "default"))
     if not is_scaled:
-        accuracy, bound = float(options.get("relative_accuracy", 0.01)), options.get("bound", "kept")
+        accuracy, bound = demanded(options)
         plan = scene.plan(accuracy, surface=surface, bound=bound)
         wanted.gains.alpha_f = margins.felt_alpha_f(rig, wanted, plan, load)
     return wanted
@@ -165,11 +164,12 @@ def checked_seed(seed: int) -> int:
     return index(seed)
 
 
-def checked_bound(bound: Bound) -> Bound:
-    """One of those that there are."""
+def demanded(options: Options) -> tuple[float, Bound]:
+    """How true the planned force has to be, and what its bound is held to."""
+    bound = options.get("bound", "kept")
     if bound not in BOUNDS:
         raise InvalidValue(f"bound {bound!r}: valid are {', '.join(BOUNDS)}")
-    return bound
+    return float(options.get("relative_accuracy", 0.01)), bound
 
 
 def check_options(options: Mapping[str, Any]) -> None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from nanotouch import _core
 from nanotouch.errors import InvalidValue
-from nanotouch.scene import Rig, Scene, Settings
+from nanotouch.scene import BOUNDS, Rig, Scene, Settings
 from nanotouch.scene.plan import Plan
 from nanotouch.scene.surface import Surface
 from nanotouch.touch import _live, _stopped, _told, margins
@@ -29,7 +29,7 @@ from nanotouch.touch.faults import Faults
 from nanotouch.touch.hal import Halves, halves_of
 from nanotouch.touch.margins import Calm, Margins
 from nanotouch.touch.operator import Hold, Input, core_input, script_for, stretched
-from nanotouch.touch.options import BOUNDS, Options, Pace, Progress, check_options, checked_bound, checked_seed, settings_with
+from nanotouch.touch.options import Options, Pace, Progress, check_options, checked_seed, demanded, settings_with
 from nanotouch.touch.options import settings_for_path as settings_for_path
 from nanotouch.touch.record import Metadata, Recording, Writer
 from nanotouch.touch.supervisor import REASONS, Guarantee
@@ -92,8 +92,7 @@ class Session(Runs, Frozen):
         self._mode: Mode = mode  # that it was opened in, or was asked for last
         self.seed = checked_seed(options.get("seed", 1))
         self.minimum_margin = float(options.get("minimum_margin", 1.5))
-        self.relative_accuracy = float(options.get("relative_accuracy", 0.01))
-        self.bound = checked_bound(options.get("bound", "kept"))
+        self.relative_accuracy, self.bound = demanded(options)
         self.clearance = options.get("clearance", 0.1e-6)
         self.path = tuple(checked_path(mode, path, surface))
         heights = self.path_heights()[1]
@@ -112,14 +111,14 @@ class Session(Runs, Frozen):
                 self._scene.core, self.rig.core, wanted.core, {
                     **dict(zip(("surface", "radii", "properties"), parts, strict=True)),
                     "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
-                    "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
-                    "minimum_margin": self.minimum_margin, "relative_accuracy": self.relative_accuracy,
-                    "bound": BOUNDS.index(self.bound), "preflight": options.get("preflight", True), "law": control if callable(control) else None,
+                    "rise": float(heights.max() - heights[0]),
+                    "clearance": self.clearance, "minimum_margin": self.minimum_margin,
+                    "preflight": options.get("preflight", True), "law": control if callable(control) else None,
+                    "relative_accuracy": self.relative_accuracy, "bound": BOUNDS.index(self.bound),
                     "master": options.get("master"), "slave": options.get("slave"),
-                    "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
+                    "ring_capacity": RING_CAPACITY * options.get("recorded", True), "rod": rod and rod._core,
                     **plant_options(options.get("probe_model", "auto"), options.get("substep"), faults),
                     "particles": None if particles is None else particles._core,
-                    "rod": None if rod is None else rod._core,
                 },
             )  # fmt: skip
         described = {"scene": self._scene, "rig": self.rig, "settings": self._settings}
@@ -304,12 +303,8 @@ class Session(Runs, Frozen):
             "alpha_f": self._opened_with["settings"]["gains"]["alpha_f"],
             "spring_constant": self.rig.probe.spring_constant,
             "start_height": None if math.isnan(self.core.start_height) else self.core.start_height,
-            "master_start": self.core.master_start,
-            "control": self.control,
-            "relative_accuracy": self.relative_accuracy,
-            "bound": self.bound,
-            "amounts": self._amounts,
-            "tare": list(self.core.tare),
+            "master_start": self.core.master_start, "control": self.control, "amounts": self._amounts,
+            "relative_accuracy": self.relative_accuracy, "bound": self.bound, "tare": list(self.core.tare),
             "events": self._asked(),
             "path": [list(point) for point in self.path],
             "seed": self.seed,
@@ -320,7 +315,7 @@ class Session(Runs, Frozen):
             **self._opened_with,
             "plan": str(self.plan).splitlines(),
             "version": _core.version,
-        }
+        }  # fmt: skip
         if self.surface is not None:
             entries["surface_size"] = list(self.surface.size)
             if self.surface.origin is not None:

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the bound of a plan is held to: kept, exact, any; and what a refusal says."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch import Demand, Plan, Scene, presets
+from nanotouch.errors import InvalidValue
+
+
+def unknown() -> Scene:
+    """Van der Waals alone pulls more than the work of adhesion."""
+    return Scene(medium={"relative_humidity": 0.0}, adhesion={"hamaker_constant": 1e-17})
+
+
+def test_a_scene_takes_a_demand_as_plan_make_does() -> None:
+    scene = presets.silicon_in_air()[0]
+    demand = Demand(demand={"relative_accuracy": 1e-4, "quantity": "stiffness", "force_floor": 1e-12})
+    plan, made = scene.plan(demand), Plan.make(scene, demand)
+    assert str(plan) == str(made) == str(scene.plan(1e-4, 1e-12, "stiffness"))
+    with pytest.raises(TypeError, match="those of the Demand"):
+        scene.plan(demand, quantity="radius")
+
+
+def test_an_error_of_zero_is_refused_with_the_best_that_can_be_kept() -> None:
+    for scene in (Scene(), presets.mica_in_air()[0]):
+        with pytest.raises(InvalidValue, match=r"demand.relative_accuracy = 0: valid is") as refusal:
+            scene.plan(0.0)
+        best = float(re.findall(r"valid is (\S+) \.\.", str(refusal.value))[0])
+        assert 0.0 < scene.plan(best).bound < math.inf
+
+
+def test_exact_has_a_bound_or_says_that_there_is_none() -> None:
+    """Everything in full errs by no more than a plan that was demanded does, where a table reaches it."""
+    scene = Scene(
+        tip={"radius": 10e-9},
+        sample={"youngs_modulus": 4.5e9, "poisson_ratio": 0.35},
+        medium={"relative_humidity": 0.0},
+        adhesion={"work_of_adhesion": 0.05, "hamaker_constant": 1e-19},
+    )
+    assert scene.plan(bound="exact").bound <= scene.plan(1e-3).bound
+    assert "inf %" not in str(scene.plan(bound="exact"))
+
+
+def test_any_bound_gives_a_force_and_says_what_it_is_worth() -> None:
+    scene = unknown()
+    with pytest.raises(InvalidValue, match="alone pulls more than the whole work of adhesion") as refusal:
+        scene.plan()
+    plan = scene.plan(bound="any")
+    assert math.isinf(plan.bound)
+    assert "force with a bound that is not known" in str(plan)
+    assert any("no bound is known" in warning.text for warning in plan.warnings)
+    assert np.isfinite(plan.force(np.linspace(5e-9, -1e-9, 50))).all()
+    # the change that the refusal names works
+    field, value = re.findall(r"; (\S+) = (\S+) \S+ works", str(refusal.value))[0]
+    scene[field] = float(value)
+    assert scene.plan().bound <= 0.01
+    assert scene.plan(bound="any").bound <= 0.01  # what can be kept is
+
+
+def test_a_session_on_a_simulated_rig_takes_any_bound() -> None:
+    session = nt.Session(unknown(), bound="any", minimum_margin=0.0)
+    assert session.metadata()["bound"] == "any"
+    with pytest.raises(InvalidValue, match="bound 'none'"):
+        nt.Session(bound="none")  # type: ignore[arg-type]
