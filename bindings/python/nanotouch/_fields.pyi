@@ -238,11 +238,13 @@ class SceneFields(Description, core_type=_core.Scene):
 
 class DemandDemand(Section):
     relative_accuracy: float
-    """largest error of the quantity over max(|it|, its scale); 0: exact [-], 0 .. 0.5"""
+    """largest error of the quantity over max(|it|, its scale) [-], 0 .. 0.5"""
     force_floor: float
     """forces below this cannot be felt [N], 0 .. 1"""
     quantity: Literal["force", "stiffness", "radius", "folds"]
     """what has to be that accurate"""
+    bound: Literal["kept", "exact", "any"]
+    """kept: no more than that; exact: every law in full; any: the least there is, or none"""
     budget: float
     """what one evaluation may cost, in Hertz evaluations; 0: anything [-], 0 .. 1e+09"""
 
@@ -250,6 +252,7 @@ class DemandDemandValues(TypedDict, total=False):
     relative_accuracy: float
     force_floor: float
     quantity: Literal["force", "stiffness", "radius", "folds"]
+    bound: Literal["kept", "exact", "any"]
     budget: float
 
 class DemandSections(TypedDict, total=False):
