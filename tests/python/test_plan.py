@@ -306,7 +306,7 @@ def test_bad_history() -> None:
 
 def test_tail_stronger_than_the_adhesion_is_refused() -> None:
     scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"hamaker_constant": 1e-17})
-    with pytest.raises(InvalidValue, match=r"adhesion\.hamaker_constant = 1e-17 J: valid is 0 \.\."):
+    with pytest.raises(InvalidValue, match=r"whole work of adhesion\) = 1e-17 J: valid is 0 \.\."):
         scene.plan()
 
 

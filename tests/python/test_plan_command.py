@@ -171,7 +171,7 @@ def test_not_a_number_of_evaluations(capsys: pytest.CaptureFixture[str]) -> None
         ("[tip]\nradius_nm = -1\n", "radius_nm = -1"),
         ("[tipp]\nradius_nm = 20\n", "unknown section [tipp]"),
         ("[demand]\nquantity = 'colour'\n", "valid are force, stiffness, radius, folds"),
-        ("[adhesion]\nhamaker_constant_J = 1e-17\n", "adhesion.hamaker_constant = 1e-17 J"),
+        ("[adhesion]\nhamaker_constant_J = 1e-17\n", "alone pulls more than the whole work of adhesion) = 1e-17 J"),
         ("radius = \n", "is not a TOML file"),
     ],
 )
