@@ -12,7 +12,9 @@
 static inline nt_problem nt_problem_of(const char *field, const char *unit, double value, double minimum,
                                        double maximum)
 {
-    return (nt_problem){.field = field, .unit = unit, .value = value, .minimum = minimum, .maximum = maximum};
+    const nt_problem problem = {
+        field, unit, value, minimum, maximum, NT_PROBLEM_RANGE, NULL, {NULL, NULL, 0.0}}; /* as C++ reads it, too */
+    return problem;
 }
 
 /* And of what a code says beside. */

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/problem.h"
 #include "curve.hpp"
 
 namespace nanotouch
@@ -84,12 +85,12 @@ nt_status nt_fit_recipe_check(const nt_fit_recipe *recipe, nt_problem *problem)
     if (!recipe)
         return NT_E_ARGUMENT;
     if (!(recipe->sensitivity_uncertainty >= 0.0 && recipe->sensitivity_uncertainty <= 1.0)) {
-        *problem = {"sensitivity_uncertainty", "", recipe->sensitivity_uncertainty, 0.0, 1.0};
+        *problem = nt_problem_of("sensitivity_uncertainty", "", recipe->sensitivity_uncertainty, 0.0, 1.0);
         return std::isnan(recipe->sensitivity_uncertainty) ? NT_E_NOT_FINITE : NT_E_RANGE;
     }
     if (!(recipe->lowest_force < recipe->highest_force)) {
         const double all = std::numeric_limits<double>::infinity();
-        *problem = {"highest_force", "N", recipe->highest_force, recipe->lowest_force, all};
+        *problem = nt_problem_of("highest_force", "N", recipe->highest_force, recipe->lowest_force, all);
         return NT_E_RANGE;
     }
     nt_fit_options options = recipe->options;

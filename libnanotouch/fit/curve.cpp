@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/problem.h"
 #include "points.hpp"
 #include "solving.hpp"
 
@@ -42,7 +43,7 @@ nt_status fit_branch(const nt_fit_recipe &recipe, double spring_constant, const 
                      nt_fit_outcome *outcome)
 {
     if (!(spring_constant > 0.0 && spring_constant < largest_spring_constant)) {
-        outcome->problem = {"spring_constant", "N/m", spring_constant, 0.0, largest_spring_constant};
+        outcome->problem = nt_problem_of("spring_constant", "N/m", spring_constant, 0.0, largest_spring_constant);
         return std::isnan(spring_constant) ? NT_E_NOT_FINITE : NT_E_RANGE;
     }
     Fitted fitted;
@@ -78,7 +79,7 @@ nt_status check_span(const nt_curve_segment &segment, nt_problem *problem)
     const auto changes = [&](double force) { return force != segment.force[0]; };
     if (segment.count < NT_CURVE_FEWEST || std::any_of(segment.force, segment.force + segment.count, changes))
         return NT_OK;
-    *problem = {"force (span)", "N", 0.0, 1e-18, 1.0};
+    *problem = nt_problem_of("force (span)", "N", 0.0, 1e-18, 1.0);
     return NT_E_RANGE;
 }
 
@@ -103,7 +104,7 @@ void fit_recorded(const nt_fit_recipe &recipe, const nt_curve &curve, nt_fit_out
     }
     if (fitted.count < NT_CURVE_FEWEST) {
         const char *name = recipe.approach ? "approach.count" : "retract.count";
-        outcome->problem = {name, "", double(fitted.count), NT_CURVE_FEWEST, 1e9};
+        outcome->problem = nt_problem_of(name, "", double(fitted.count), NT_CURVE_FEWEST, 1e9);
         outcome->status = NT_E_RANGE;
         return;
     }

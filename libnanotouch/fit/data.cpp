@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The points of a curve: spans and checks.
 #include "data.hpp"
+#include "core/problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,12 +36,12 @@ nt_status check_column(const Column &column, long count, nt_problem *problem)
         const double value = column.values[i * column.stride];
         if (std::fabs(value) <= largest_value)
             continue;
-        *problem = {column.name, column.unit, value, -largest_value, largest_value};
+        *problem = nt_problem_of(column.name, column.unit, value, -largest_value, largest_value);
         return std::isfinite(value) ? NT_E_RANGE : NT_E_NOT_FINITE;
     }
     if (span(column.values, count, column.stride).width() > 0.0)
         return NT_OK;
-    *problem = {column.span_name, column.unit, 0.0, 1e-18, largest_value};
+    *problem = nt_problem_of(column.span_name, column.unit, 0.0, 1e-18, largest_value);
     return NT_E_RANGE;
 }
 
@@ -82,11 +83,11 @@ nt_status check_data(const nt_fit_options &options, const nt_fit_data *data, nt_
     for (int i = 0; i < NT_FIT_PARAMETERS; i++)
         free += is_free(options, i);
     if (free == 0) {
-        *problem = {"parameter (free ones)", "", 0.0, 1.0, NT_FIT_PARAMETERS};
+        *problem = nt_problem_of("parameter (free ones)", "", 0.0, 1.0, NT_FIT_PARAMETERS);
         return NT_E_RANGE;
     }
     if (data->count < free + 3) {
-        *problem = {"data.count", "", double(data->count), double(free + 3), 1e9};
+        *problem = nt_problem_of("data.count", "", double(data->count), double(free + 3), 1e9);
         return NT_E_RANGE;
     }
     const Column position{data->position, data->position_stride, "data.position", "data.position (span)", "m"};

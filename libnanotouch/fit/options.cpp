@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 
+#include "core/problem.h"
 #include "fit/models/row.h"
 #include "nanotouch/field.h"
 
@@ -59,14 +60,15 @@ bool within(double value, double minimum, double maximum)
 
 nt_status check_start(const nt_fit_quantity &quantity, const nt_fit_start &start, nt_problem *problem)
 {
-    const nt_problem complaint{quantity.name, quantity.unit, start.initial, start.minimum, start.maximum};
+    const nt_problem complaint =
+        nt_problem_of(quantity.name, quantity.unit, start.initial, start.minimum, start.maximum);
     const double lowest = quantity.minimum, highest = quantity.maximum;
     if (!within(start.minimum, lowest, highest))
-        return complain(problem, {quantity.name, quantity.unit, start.minimum, lowest, highest});
+        return complain(problem, nt_problem_of(quantity.name, quantity.unit, start.minimum, lowest, highest));
     if (!within(start.maximum, start.minimum, highest))
-        return complain(problem, {quantity.name, quantity.unit, start.maximum, start.minimum, highest});
+        return complain(problem, nt_problem_of(quantity.name, quantity.unit, start.maximum, start.minimum, highest));
     if (!within(start.sigma, 0.0, std::numeric_limits<double>::max()))
-        return complain(problem, {quantity.name, quantity.unit, start.sigma, 0.0, highest});
+        return complain(problem, nt_problem_of(quantity.name, quantity.unit, start.sigma, 0.0, highest));
     const bool to_be_guessed = std::isnan(start.initial) && !start.fixed && start.sigma == 0.0;
     if (!to_be_guessed && !within(start.initial, start.minimum, start.maximum))
         return complain(problem, complaint);
@@ -78,14 +80,15 @@ nt_status check_law(const nt_fit_law *law, nt_problem *problem)
     if (!law || !law->force || !law->name)
         return NT_E_ARGUMENT;
     if (law->count < 1 || law->count > NT_FIT_OWN)
-        return complain(problem, {"law.count", "", double(law->count), 1.0, double(NT_FIT_OWN)});
+        return complain(problem, nt_problem_of("law.count", "", double(law->count), 1.0, double(NT_FIT_OWN)));
     for (int i = 0; i < law->count; i++) {
         const nt_fit_quantity &quantity = law->parameter[i];
         if (!quantity.name || !quantity.unit)
             return NT_E_ARGUMENT;
         if (!std::isfinite(quantity.minimum) || !(quantity.maximum > quantity.minimum) ||
             !std::isfinite(quantity.maximum))
-            return complain(problem, {quantity.name, quantity.unit, quantity.maximum, quantity.minimum, 1e300});
+            return complain(problem,
+                            nt_problem_of(quantity.name, quantity.unit, quantity.maximum, quantity.minimum, 1e300));
     }
     return NT_OK;
 }
@@ -94,16 +97,16 @@ nt_status check_choices(const nt_fit_options *options, nt_problem *problem)
 {
     const int model = number_of(options->model), loss = number_of(options->loss);
     if (model < 0 || model > NT_FIT_CUSTOM)
-        return complain(problem, {"model", "", double(model), 0.0, NT_FIT_CUSTOM});
+        return complain(problem, nt_problem_of("model", "", double(model), 0.0, NT_FIT_CUSTOM));
     if (loss < NT_LOSS_SQUARES || loss > NT_LOSS_CAUCHY)
-        return complain(problem, {"loss", "", double(loss), NT_LOSS_SQUARES, NT_LOSS_CAUCHY});
+        return complain(problem, nt_problem_of("loss", "", double(loss), NT_LOSS_SQUARES, NT_LOSS_CAUCHY));
     if (options->max_iterations < 1 || options->max_iterations > 100000)
-        return complain(problem, {"max_iterations", "", double(options->max_iterations), 1.0, 1e5});
+        return complain(problem, nt_problem_of("max_iterations", "", double(options->max_iterations), 1.0, 1e5));
     const nt_fit_start &sensitivity = options->parameter[NT_FIT_SENSITIVITY];
     if ((!sensitivity.fixed || options->tear_sigma > 0.0) && options->spring_constant == 0.0)
-        return complain(problem, {"spring_constant", "N/m", 0.0, 1e-6, 1e6});
+        return complain(problem, nt_problem_of("spring_constant", "N/m", 0.0, 1e-6, 1e6));
     if (options->tear_sigma > 0.0 && !(nt_fit_describe(options->model).pull_off > 0.0))
-        return complain(problem, {"tear_sigma", "m", options->tear_sigma, 0.0, 0.0});
+        return complain(problem, nt_problem_of("tear_sigma", "m", options->tear_sigma, 0.0, 0.0));
     return options->model == NT_FIT_CUSTOM ? check_law(options->law, problem) : NT_OK;
 }
 
@@ -112,7 +115,8 @@ nt_status check_noise(const nt_fit_options *options, nt_problem *problem)
     bool needed = options->tear_sigma > 0.0;
     for (const nt_fit_start &start : options->parameter)
         needed = needed || (start.sigma > 0.0 && !start.fixed);
-    return needed && options->force_noise == 0.0 ? complain(problem, {"force_noise", "N", 0.0, 1e-18, 1.0}) : NT_OK;
+    return needed && options->force_noise == 0.0 ? complain(problem, nt_problem_of("force_noise", "N", 0.0, 1e-18, 1.0))
+                                                 : NT_OK;
 }
 
 nt_fit_options defaults(nt_fit_model model, const nt_fit_law *law)

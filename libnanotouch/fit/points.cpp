@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Adhesive laws: from the deepest point to the tear, or the lowest force. Others: as far as the force is repulsive.
 #include "points.hpp"
+#include "core/problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,7 @@ nt_status check_count(const Fitted &fitted, nt_problem *problem)
 {
     if (fitted.position.size() >= NT_CURVE_FEWEST)
         return NT_OK;
-    *problem = {"points left to fit", "", double(fitted.position.size()), NT_CURVE_FEWEST, 1e9};
+    *problem = nt_problem_of("points left to fit", "", double(fitted.position.size()), NT_CURVE_FEWEST, 1e9);
     return NT_E_RANGE;
 }
 

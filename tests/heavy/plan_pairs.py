@@ -39,7 +39,7 @@ class Pair(NamedTuple):
     ratio: float = 0.0
     folds: float = 0.0  # of the folds, over both shifts
     deforms: int = 0
-    demands: tuple[float, float] = (0.0, 0.0)
+    demands: tuple[float, float] = (0.0, 0.0)  # 0: exact
 
     @property
     def violated(self) -> bool:
@@ -190,7 +190,8 @@ def measure(seed: int) -> Pair:
     plans = []
     for demand in demands:
         try:
-            plans.append(scene.plan(demand, quantity=quantity))  # type: ignore[arg-type]
+            bound = "kept" if demand else "exact"
+            plans.append(scene.plan(demand, quantity=quantity, bound=bound))  # type: ignore[arg-type]
         except Error:
             continue
     deforms = sum(bool(plan.explain().get("deforms", plan.explain().get("yields"))) for plan in plans)

@@ -13,6 +13,7 @@ import numpy as np
 from nanotouch.touch.operator import Hold
 
 from nanotouch_app.live.hand import Hand
+from nanotouch_app.live.reel import demand_of
 
 AIM, PATH, HAND = 1, 0, 1  # nt_event_kind of session.h, and its fields
 Post = Callable[[int, int, tuple[float, float, float, float]], Any]
@@ -24,7 +25,7 @@ class Led:
     def __init__(self, about: Mapping[str, Any], frame: Any, post: Post) -> None:
         self.scene, self.rig = nt.Scene(**about["scene"]), nt.Rig(**about["rig"])
         self.settings = nt.Settings(**about["settings"])
-        self.plan = self.scene.plan(relative_accuracy=max(float(about["relative_accuracy"]), float(about["bound"])))
+        self.plan = self.scene.plan(demand_of(about))
         self.path = [tuple(map(float, about["start"]))]
         self.clearance = float(about["clearance"])
         size = about.get("size")

@@ -187,7 +187,7 @@ def world_of(about: Mapping[str, Any], name: str, source: str) -> dict[str, Any]
     """As a host tells it: scene, rig and settings of a session's metadata, or of what it says of itself now."""
     scene = nt.Scene(**about["scene"])
     accuracy = float(about.get("relative_accuracy", 0.01))
-    plan = scene.plan(relative_accuracy=accuracy)
+    plan = scene.plan(relative_accuracy=accuracy, bound=about.get("bound", "kept"))
     gains, lever = about["settings"]["gains"], float(about["spring_constant"])
     spring = float(gains.get("coupling_stiffness", 0.0) / (gains["alpha_p"] * gains["alpha_f"]))
     return {
@@ -199,3 +199,11 @@ def world_of(about: Mapping[str, Any], name: str, source: str) -> dict[str, Any]
         "law": plan.contact_law, "warnings": [], "start": list(about.get("path", [(0.0, 0.0)])[0]),
         "clearance": float(about.get("clearance", 0.0)), "size": about.get("surface_size"),
     }  # fmt: skip
+
+
+def demand_of(world: Mapping[str, Any], laxer: float = 1.0) -> nt.Demand:
+    """What a plan of the same world, made here anew, keeps: its bound, or any where none is known."""
+    accuracy, bound = float(world["relative_accuracy"]), float(world["bound"])
+    if np.isinf(bound):
+        return nt.Demand(demand={"relative_accuracy": accuracy, "bound": "any"})
+    return nt.Demand(demand={"relative_accuracy": max(accuracy, laxer * bound)})

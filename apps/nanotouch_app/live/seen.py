@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from nanotouch_app.live import dented
 from nanotouch_app.live.energy import Balance, Spent
 from nanotouch_app.live.hands.device import Feel
-from nanotouch_app.live.reel import Reel
+from nanotouch_app.live.reel import Reel, demand_of
 
 Floats = NDArray[np.float64]
 
@@ -140,9 +140,7 @@ class Seen:
                 break
 
     def _plan_for(self, scene: nt.Scene) -> None:
-        self.plan = scene.plan(
-            relative_accuracy=max(float(self.world["relative_accuracy"]), LAXER * float(self.world["bound"]))
-        )
+        self.plan = scene.plan(demand_of(self.world, LAXER))
         self.scene = scene
         facts = self.plan.explain()
         self.facts = facts

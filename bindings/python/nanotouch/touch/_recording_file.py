@@ -115,6 +115,8 @@ def parts_of(path: Path) -> dict[str, Any]:
         why = losses.damages[0][0].reason if losses.damages else f"it has no schema {ENCODING!r}"
         raise ReadError(f"{path} is not a recording of nanotouch: {why}")
     _check_metadata(path, metadata)
+    if metadata.get("relative_accuracy") == 0:  # older files: that is how everything exact was asked for
+        metadata.setdefault("bound", "exact")
     columns, starts = _columns(path, names, blocks)
     times = np.split(columns["time"], starts)
     damage, lost = losses.told(times, metadata.get(ROWS))
@@ -173,7 +175,7 @@ MAY_LACK = ("start_height", "spring_constant", "alpha_p", "alpha_f", "master_sta
 _KINDS: dict[str, tuple[tuple[str, ...], Callable[[Any], bool]]] = {
     "a number": (("alpha_p", "alpha_f", "spring_constant", "start_height", "master_start", "loop_rate", "rows",
                   "relative_accuracy", "stability_margin", "rewinds_before"), _is_number),
-    "a text": (("mode", "control", "probe_model", "clock", "version", "incomplete"), lambda v: isinstance(v, str)),
+    "a text": (("mode", "control", "probe_model", "clock", "version", "incomplete", "bound"), lambda v: isinstance(v, str)),
     "tables": (("scene", "rig", "settings"),
                lambda v: isinstance(v, dict) and all(isinstance(one, dict) for one in v.values())),
     "two numbers": (("surface_size",), lambda v: _are_numbers(v) and len(v) in (0, 2)),
