@@ -10,6 +10,7 @@
 #include <limits>
 #include <new>
 
+#include "core/problem.h"
 #include "fit/models/row.h"
 #include "halves.hpp"
 #include "model.hpp"
@@ -225,7 +226,7 @@ nt_status Solving::leave_steep_part()
     if (data_.count >= NT_CURVE_FEWEST)
         return fit_without_false_tear();
     if (problem_)
-        *problem_ = {"points left to fit", "", double(data_.count), NT_CURVE_FEWEST, 1e9};
+        *problem_ = nt_problem_of("points left to fit", "", double(data_.count), NT_CURVE_FEWEST, 1e9);
     return NT_E_RANGE;
 }
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
 
 import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import Demand, Plan, Scene, presets
 from nanotouch.errors import InvalidValue
+from nanotouch_app.live.reel import demand_of, world_of
 
 
 def unknown() -> Scene:
@@ -68,3 +70,26 @@ def test_a_session_on_a_simulated_rig_takes_any_bound() -> None:
     assert session.metadata()["bound"] == "any"
     with pytest.raises(InvalidValue, match="bound 'none'"):
         nt.Session(bound="none")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("said", "bound"), [({}, "exact"), ({"bound": "any"}, "any")])
+def test_an_older_recording_of_accuracy_zero_is_one_of_everything_exact(
+    tmp_path: Path, said: dict[str, str], bound: str
+) -> None:
+    session = nt.Session(preflight=False)
+    older = session.metadata() | {"relative_accuracy": 0.0}
+    del older["bound"]
+    with nt.record.Writer(tmp_path / "r.mcap", older | said) as writer:
+        writer.append(session.advance(0.01))
+    metadata = nt.record.Recording.read(tmp_path / "r.mcap").metadata
+    assert metadata["bound"] == bound
+    assert world_of(metadata, "touch", "recording")["bound"] == Scene().plan(bound="exact").bound
+
+
+def test_a_viewer_plans_the_world_that_it_sees() -> None:
+    """Within what the host's plan is known within; and where that is not known, too."""
+    for scene, known in ((Scene(), True), (unknown(), False)):
+        plan = scene.plan(bound="any")
+        again = scene.plan(demand_of({"relative_accuracy": 0.01, "bound": plan.bound}))
+        assert math.isfinite(again.bound) == known
+        np.testing.assert_allclose(again.force([1e-9]), plan.force([1e-9]))

@@ -44,6 +44,18 @@ void bind_curves(py::module_ &module);
 void bind_linux(py::module_ &module);
 void bind_c_header(py::module_ &module);
 
+// Of a value out of its range.
+inline nt_problem problem_of(const char *field, const char *unit, double value, double minimum, double maximum)
+{
+    nt_problem problem{};
+    problem.field = field;
+    problem.unit = unit;
+    problem.value = value;
+    problem.minimum = minimum;
+    problem.maximum = maximum;
+    return problem;
+}
+
 // Raises the Python exception of a status, with this message.
 [[noreturn]] void raise(nt_status status, const std::string &message);
 // Raises the Python exception of a status; `what` says what was attempted. Returns only for NT_OK.

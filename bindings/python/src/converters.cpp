@@ -262,7 +262,7 @@ static double check_converters(const py::dict &given)
 {
     Chips own;
     const nt_converter_setup setup = setup_of(given, own);
-    nt_problem problem{"", "", 0.0, 0.0, 0.0}, one{};
+    nt_problem problem = problem_of("", "", 0.0, 0.0, 0.0), one{};
     const nt_status status = nt_converter_setup_check(&setup, &problem);
     const auto half = given["half"].cast<std::string>();
     const auto keys = given["keys"].cast<std::vector<std::vector<std::string>>>();

@@ -69,7 +69,7 @@ static py::object branch_dict(const nt_curve_branch &branch)
 static nt_curve_segment checked(const Array &z, const Array &force)
 {
     const nt_curve_segment segment = segment_of(z, force);
-    nt_problem problem{"points of a branch", "", double(segment.count), NT_CURVE_FEWEST, 1e9};
+    nt_problem problem = problem_of("points of a branch", "", double(segment.count), NT_CURVE_FEWEST, 1e9);
     const nt_status status = segment.count < NT_CURVE_FEWEST ? NT_E_RANGE : nt_curve_segment_check(&segment, &problem);
     raise_on(status, problem, "curve");
     return segment;

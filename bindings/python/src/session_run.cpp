@@ -222,8 +222,8 @@ static void start(Session &self, int pace, uint64_t ticks)
         raise(status, "start: a real master on a simulated slave runs at pace 'wall', or 'hard'");
     if (status == NT_E_RANGE) {
         const nt_wall_pace wall = nt_session_wall_pace(self.handle);
-        const nt_problem problem = {wall.margin.field, "", wall.margin.margin,
-                                    nt_session_setup_of(self.handle)->minimum_margin, INFINITY};
+        const nt_problem problem = problem_of(wall.margin.field, "", wall.margin.margin,
+                                              nt_session_setup_of(self.handle)->minimum_margin, INFINITY);
         char late[96];
         std::snprintf(late, sizeof late, "start: a force waits %.3g ms at pace 'wall' on this machine",
                       1e3 * (wall.hold + wall.latency));

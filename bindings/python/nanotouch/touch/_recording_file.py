@@ -175,7 +175,8 @@ MAY_LACK = ("start_height", "spring_constant", "alpha_p", "alpha_f", "master_sta
 _KINDS: dict[str, tuple[tuple[str, ...], Callable[[Any], bool]]] = {
     "a number": (("alpha_p", "alpha_f", "spring_constant", "start_height", "master_start", "loop_rate", "rows",
                   "relative_accuracy", "stability_margin", "rewinds_before"), _is_number),
-    "a text": (("mode", "control", "probe_model", "clock", "version", "incomplete", "bound"), lambda v: isinstance(v, str)),
+    "a text": (("mode", "control", "probe_model", "clock", "version", "incomplete", "bound"),
+               lambda v: isinstance(v, str)),
     "tables": (("scene", "rig", "settings"),
                lambda v: isinstance(v, dict) and all(isinstance(one, dict) for one in v.values())),
     "two numbers": (("surface_size",), lambda v: _are_numbers(v) and len(v) in (0, 2)),
