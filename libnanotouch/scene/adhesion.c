@@ -4,7 +4,7 @@
 
 #include "nanotouch/forces.h"
 #include "nanotouch/scene.h"
-#include "scene/parts.h"
+#include "scene/terms/term.h"
 
 nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene)
 {
@@ -85,9 +85,10 @@ nt_status nt_plan_check_distance(const nt_scene *scene, nt_problem *problem)
     const double most = 12.0 * NT_PI * farthest * farthest * least_work(scene), H = scene->adhesion.hamaker_constant;
     if (!has_part(scene) || scene->adhesion.given == NT_ADHESION_GIVEN_PULL_OFF || H <= most * (1.0 + 1e-12))
         return NT_OK;
-    if (problem)
-        *problem = (nt_problem){.field = "adhesion.hamaker_constant", .unit = "J", .value = H, .maximum = most};
-    return NT_E_RANGE;
+    nt_problem tail = nt_problem_of("adhesion.hamaker_constant", "J", H, 0.0, most);
+    tail.code = NT_PROBLEM_TAIL;
+    tail.cause = nt_term_rows[NT_PLAN_VDW]->noun;
+    return nt_problem_refuse(problem, tail);
 }
 
 nt_contact nt_scene_contact(const nt_scene *scene, double work_of_adhesion)

@@ -77,7 +77,8 @@ double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
     case NT_QUANTITY_FOLDS:
         return fmax(fabs(plan->release_gap), plan->length);
     default:
-        return fmax(scale_of_force(plan, maximum_load), accuracy >= STRICTEST ? plan->demand.force_floor / accuracy : 0.0);
+        return fmax(scale_of_force(plan, maximum_load),
+                    accuracy >= STRICTEST ? plan->demand.force_floor / accuracy : 0.0);
     }
 }
 

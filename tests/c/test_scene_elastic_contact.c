@@ -31,7 +31,8 @@ static nt_scene dry(double radius, double modulus, double work, double hamaker)
 
 static void make(nt_plan *plan, const nt_scene *scene, nt_quantity quantity, double accuracy)
 {
-    const nt_demand demand = {.relative_accuracy = accuracy, .quantity = quantity};
+    const nt_demand demand = {
+        .relative_accuracy = accuracy, .quantity = quantity, .bound = accuracy > 0.0 ? NT_BOUND_KEPT : NT_BOUND_EXACT};
     const nt_plan_inputs inputs = {.scene = scene, .demand = &demand};
     nt_problem problem = {0};
     if (nt_plan_make(plan, &inputs, &problem) != NT_OK)

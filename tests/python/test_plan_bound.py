@@ -81,7 +81,7 @@ def test_an_older_recording_of_accuracy_zero_is_one_of_everything_exact(
     del older["bound"]
     with nt.record.Writer(tmp_path / "r.mcap", older | said) as writer:
         writer.append(session.advance(0.01))
-    metadata = nt.record.Recording.read(tmp_path / "r.mcap").metadata
+    metadata = nt.record.read(tmp_path / "r.mcap").metadata
     assert metadata["bound"] == bound
     assert world_of(metadata, "touch", "recording")["bound"] == Scene().plan(bound="exact").bound
 

@@ -331,7 +331,7 @@ static nt_status deform(const nt_plan *plan, const nt_scene *scene, nt_deform_wa
     of->load = NT_DEFORM_DEEPER * scene->range.maximum_load;
     of->finest = share * finest;
     of->tolerance = rung_below(share * left, of->finest);
-    if (!(left >= finest) && others >= WORST && others - spread_of_radii(plan) < demanded)
+    if (plan->radii && !(left >= finest) && others >= WORST && others - spread_of_radii(plan) < demanded)
         return nt_problem_refuse(problem, nt_deform_spread(plan->radii->maximum, plan->contact.radius,
                                                            plan->contact.radius * (1.0 + demanded)));
     if (!(left >= finest))
