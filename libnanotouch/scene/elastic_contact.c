@@ -191,7 +191,7 @@ double nt_plan_tail_error(const nt_plan *plan)
 
 /* A tail that goes on into contact from a table pulls so much of w, but for what the table errs by there. Stiffness,
  * radius and force go as roots beside fold and first touch: as far from them as that comes to little. */
-double nt_plan_doubt_share(nt_plan *plan, double error)
+double nt_plan_doubt_share(nt_plan *plan, double of_table, double error)
 {
     const double pull = 2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion;
     const int is_felt = plan->quantity != NT_QUANTITY_FOLDS;
@@ -199,7 +199,7 @@ double nt_plan_doubt_share(nt_plan *plan, double error)
     if (plan->deformation.jumps || plan->deformation.holds || !(nt_plan_deform_share(plan) > 0.0))
         return 0.0;
     const double from_jump = fmax(1.0 - plan->elastic_number / NT_ELASTIC_JUMP, SAFE);
-    plan->deformation.doubt = OF_TABLE / sqrt(from_jump) * error * nt_plan_force_scale(plan, 0.0) / pull;
+    plan->deformation.doubt = OF_TABLE / sqrt(from_jump) * of_table * nt_plan_force_scale(plan, 0.0) / pull;
     const doubt of = doubt_of(plan, 0.0, plan->deformation.doubt);
     const double fold = shift_by(plan, 0.0, plan->deformation.doubt),
                  farthest = FARTHEST_DOUBT * fabs(plan->release_gap);

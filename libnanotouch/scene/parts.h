@@ -225,12 +225,13 @@ double nt_plan_around_error(const nt_plan *plan, int tails);
 /* elastic_contact.c: what the force of such a contact errs by, because its tail on the undeformed gap takes too little
  * of w. */
 double nt_plan_tail_error(const nt_plan *plan);
-/* What a deforming plan adds to its bound, `error`, because its tail's share of w is no better; deformation.doubt,
- * deformation.beside. */
-double nt_plan_doubt_share(nt_plan *plan, double error);
+/* What a deforming plan adds to its bound, `error`, because its tail's share of w is no better than its table, which
+ * errs by a part of that; deformation.doubt, deformation.beside. */
+double nt_plan_doubt_share(nt_plan *plan, double of_table, double error);
 /* How far the folds of an adhesive contact are from where they would be on a sample that deforms [m]. */
 double nt_plan_rigid_shift(const nt_plan *plan);
-/* deformation/deform.c: the tables of a sample that came to no end, so that no other demand tries them again. */
+/* deformation/deform.c: the tables of a sample that came to no end, and the last that did, so that no other demand
+ * makes them again. */
 enum { NT_DEFORM_TRIED = 64 };
 typedef struct nt_deform_end {
     double tolerance, scale;
@@ -240,15 +241,19 @@ typedef struct nt_deform_end {
 typedef struct nt_deform_tried {
     nt_deform_end end[NT_DEFORM_TRIED];
     int count;
-    int *meshes; /* that all tables together may still take, which is counted down; NULL: as many as they take */
+    nt_deform_end last; /* tolerance 0: none yet */
+    nt_deform_table table;
+    double *work; /* that all tables together may still take, which is counted down; NULL: whatever they take. 1: of
+                   * the equations of a full mesh, solved once, some 0.15 ms; a table takes 20 to 500 */
 } nt_deform_tried;
 /* The plan of a scene whose sample deforms under all terms together, within an accuracy (0: that of everything exact),
  * made from one that has facts and no choice yet. `tried`: of this scene. */
 nt_status nt_plan_deform(const nt_plan *plan, const nt_scene *scene, double accuracy, nt_deform_tried *tried,
                          nt_plan *made, nt_problem *problem);
-/* deformation/adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share
- * of the demand. NT_E_RANGE: contact and table do not fit. */
-nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
+/* deformation/adhere.c: with its table, contact and facts of a scene with adhesion; errors of the table and of all that
+ * is in none, as shares of the demand. NT_E_RANGE: contact and table do not fit. */
+nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double of_table, double others,
+                                nt_problem *problem);
 /* Whether other laws press on the sample around its adhesive contact by so much that contact and laws are solved
  * together. */
 int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene);

@@ -12,7 +12,9 @@
 #define WORST 0.5       /* an error that is no bound any more: the largest that can be demanded */
 #define UNASKED 0.01    /* without a demand the sample is rigid up to this error */
 #define STRICTEST 1e-12 /* demand */
-#define COARSER 2.0     /* a table, where no finer one was found */
+#define FINER 0.2       /* from one table to the next, where the best is looked for */
+#define WORK 2000.0     /* of all tables that are tried: 0.3 s, where usual ones take 5 ms */
+#define WORK_OF_BEST 1500.0
 
 enum { TRIES = 8 };
 
@@ -158,17 +160,27 @@ static int is_left(const nt_plan *plan, double maximum_load)
     return plan->elastic_number <= STIFF || plan->rigid_error <= plan->accuracy;
 }
 
-/* Where no table keeps to the demand: the finest that does better than terms on the undeformed gap. What is the same
- * for every demand is tried in the same order, so that a stricter demand has no looser bound. */
+/* Where no table keeps to the demand: one that does better than terms on the undeformed gap, then finer ones while
+ * there are any. That is the same for every demand, so that a stricter one has no looser bound. */
 static nt_status deform_at_best(const nt_plan *plan, const nt_scene *scene, nt_deform_tried *tried, nt_plan *made)
 {
     nt_problem least = {0};
-    nt_status status = nt_plan_deform(plan, scene, STRICTEST, tried, made, &least);
-    double wanted = least.code == NT_PROBLEM_ACCURACY ? least.minimum : (double)INFINITY;
-    for (int i = 0; i < TRIES && status != NT_OK && wanted < rigid_error(plan); ++i) {
-        status = nt_plan_deform(plan, scene, wanted, tried, made, NULL);
-        wanted *= COARSER;
+    double best = 0.0, work = WORK_OF_BEST, *before = tried->work;
+    (void)nt_plan_deform(plan, scene, STRICTEST, tried, made, &least);
+    const double roughest = fmin(WORST, rigid_error(plan));
+    if (least.code != NT_PROBLEM_ACCURACY || !(least.minimum < roughest))
+        return NT_E_RANGE;
+    tried->work = before ? &work : NULL;
+    double more = roughest - least.minimum;
+    for (int i = 0, found = 1; i < TRIES && (found || best == 0.0); ++i, more *= FINER) {
+        const double wanted = least.minimum + (i + 1 < TRIES ? more : 0.0);
+        found = nt_plan_deform(plan, scene, wanted, tried, made, NULL) == NT_OK;
+        if (found)
+            best = wanted;
     }
+    tried->work = NULL; /* it is there already */
+    const nt_status status = best > 0.0 ? nt_plan_deform(plan, scene, best, tried, made, NULL) : NT_E_RANGE;
+    tried->work = before;
     return status;
 }
 
@@ -255,8 +267,10 @@ nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem
 {
     nt_problem reason = {0};
     const nt_scene scene = scene_of(plan, inputs);
-    nt_deform_tried tried = {.count = 0};
+    double work = WORK;
+    nt_deform_tried tried = {.work = inputs->room ? NULL : &work};
     nt_status status = decide(plan, inputs, &tried, &reason);
+    tried.work = NULL;
     if (status != NT_OK) {
         if (problem)
             *problem = nt_plan_word(plan, inputs, &tried, &reason);

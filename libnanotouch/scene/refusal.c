@@ -11,12 +11,11 @@
 #define NEAR_OVER_RELIEF 2.0 /* the same where each plan makes the tables of many radii */
 #define STRICTEST 1e-12
 #define FARTHER 1.25 /* ratio of gaps that are tried, where a sample jumps */
-enum {
-    SAID = 3,
-    FARTHER_TRIES = 24,
-    MESHES = 400,
-    MESHES_OF_ALL = 1200
-}; /* of one plan that is tried; of all changes */
+/* What may be spent on tables [work of nt_deform_tried], so that a refusal takes no more than 0.5 s, at any demand. */
+#define WORK_OF_ONE 600.0 /* plan that is tried */
+#define WORK 1500.0       /* on an accuracy; on a change */
+#define OVER_RELIEF 10.0  /* times as much, where each plan makes the tables of many radii */
+enum { SAID = 3, FARTHER_TRIES = 24 };
 
 /* The law that presses most on a sample that does not keep still, or whose pull it jumps to. */
 static int strongest(const nt_plan *plan, int pulls)
@@ -79,16 +78,21 @@ typedef struct search {
     nt_scene scene;
     nt_demand demand;
     nt_deform_tried *tried; /* NULL: of another scene, nothing is known */
-    int meshes;             /* left */
+    double *left;           /* work [that of nt_deform_tried] */
 } search;
 
-static search search_of(const nt_plan_inputs *inputs, nt_deform_tried *tried)
+static double work_of(const nt_plan_inputs *inputs, double work)
+{
+    return inputs->room ? OVER_RELIEF * work : work;
+}
+
+static search search_of(const nt_plan_inputs *inputs, nt_deform_tried *tried, double *left)
 {
     return (search){.inputs = *inputs,
                     .scene = *inputs->scene,
                     .demand = inputs->demand ? *inputs->demand : nt_demand_defaults(),
                     .tried = tried,
-                    .meshes = MESHES};
+                    .left = left};
 }
 
 /* Whether there is a plan. */
@@ -96,13 +100,16 @@ static int is_planned(search *s, nt_problem *problem)
 {
     nt_plan plan;
     nt_deform_tried none = {.count = 0}, *tried = s->tried ? s->tried : &none;
-    if (!(s->meshes > 0))
+    if (!(*s->left > 0.0))
         return 0;
+    const double allowed = fmin(*s->left, work_of(&s->inputs, WORK_OF_ONE));
+    double work = allowed;
     s->inputs.scene = &s->scene;
     s->inputs.demand = &s->demand;
-    tried->meshes = &s->meshes;
+    tried->work = &work;
     const int is = nt_plan_try(&plan, &s->inputs, tried, problem) == NT_OK;
-    tried->meshes = NULL;
+    tried->work = NULL;
+    *s->left -= allowed - work;
     return is;
 }
 
@@ -111,7 +118,6 @@ static int keeps(search *s, double accuracy, nt_problem *problem)
 {
     s->demand.relative_accuracy = accuracy;
     s->demand.budget = 0.0;
-    s->meshes = MESHES;
     return is_planned(s, problem);
 }
 
@@ -185,19 +191,15 @@ static int is_of_use(const nt_scene *scene, const char *name, double value)
 
 nt_remedy nt_plan_remedy(const nt_plan_inputs *inputs)
 {
-    int meshes = MESHES_OF_ALL;
+    double left = work_of(inputs, WORK);
     for (size_t i = 0; i < sizeof changes / sizeof *changes; ++i) {
-        search s = search_of(inputs, NULL);
-        s.meshes = meshes < MESHES ? meshes : MESHES;
-        const int had = s.meshes;
+        search s = search_of(inputs, NULL, &left);
         const nt_field *field = nt_scene_field(changes[i].field);
         const double value = printed(fmax(changes[i].factor * nt_field_get(field, inputs->scene), changes[i].least));
         if (!is_of_use(inputs->scene, field->name, value))
             continue;
         nt_field_set(field, &s.scene, value);
-        const int works = is_planned(&s, NULL);
-        meshes -= had - s.meshes;
-        if (works)
+        if (is_planned(&s, NULL))
             return (nt_remedy){field->name, field->unit, value};
     }
     return (nt_remedy){NULL, NULL, 0.0};
@@ -211,9 +213,9 @@ static nt_problem of_jump(const nt_plan *plan, const nt_plan_inputs *inputs)
         nt_problem_of(field->name, field->unit, inputs->scene->range.minimum_gap, INFINITY, NT_DEFORM_FARTHEST);
     problem.code = NT_PROBLEM_JUMPS;
     problem.cause = name_of(strongest(plan, 1));
-    double gap = nt_plan_jump_gap(plan);
+    double gap = nt_plan_jump_gap(plan), left = work_of(inputs, WORK);
     for (int i = 0; i < FARTHER_TRIES && !problem.remedy.field; ++i) {
-        search s = search_of(inputs, NULL);
+        search s = search_of(inputs, NULL, &left);
         gap = printed(FARTHER * gap);
         s.scene.range.minimum_gap = gap;
         if (is_planned(&s, NULL)) {
@@ -231,7 +233,8 @@ nt_problem nt_plan_word(const nt_plan *plan, const nt_plan_inputs *inputs, nt_de
     const int of_accuracy =
         reason->code == NT_PROBLEM_ACCURACY || reason->code == NT_PROBLEM_DEFORMS || reason->code == NT_PROBLEM_TABLE;
     const int is_closed = reason->code == NT_PROBLEM_BUDGET || reason->code == NT_PROBLEM_SPREAD;
-    search s = search_of(inputs, tried);
+    double left = work_of(inputs, WORK);
+    search s = search_of(inputs, tried, &left);
     const double planned = of_accuracy ? find(&s, reason) : 0.0;
     if (planned > 0.0)
         return nt_demand_accuracy(plan->demand.relative_accuracy, narrow(&s, plan, planned));

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
+from typing import Literal
 
 import nanotouch as nt
 import numpy as np
@@ -74,7 +75,7 @@ def test_a_session_on_a_simulated_rig_takes_any_bound() -> None:
 
 @pytest.mark.parametrize(("said", "bound"), [({}, "exact"), ({"bound": "any"}, "any")])
 def test_an_older_recording_of_accuracy_zero_is_one_of_everything_exact(
-    tmp_path: Path, said: dict[str, str], bound: str
+    tmp_path: Path, said: dict[str, str], bound: Literal["exact", "any"]
 ) -> None:
     session = nt.Session(preflight=False)
     older = session.metadata() | {"relative_accuracy": 0.0}
@@ -83,7 +84,7 @@ def test_an_older_recording_of_accuracy_zero_is_one_of_everything_exact(
         writer.append(session.advance(0.01))
     metadata = nt.record.read(tmp_path / "r.mcap").metadata
     assert metadata["bound"] == bound
-    assert world_of(metadata, "touch", "recording")["bound"] == Scene().plan(bound="exact").bound
+    assert world_of(metadata, "touch", "recording")["bound"] == Scene().plan(0.0, bound=bound).bound
 
 
 def test_a_viewer_plans_the_world_that_it_sees() -> None:

@@ -161,7 +161,8 @@ nt_status nt_plan_deform_contact(nt_plan *plan, const nt_scene *scene, double wo
     return count_from_fold(plan);
 }
 
-nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
+nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double of_table, double others,
+                                nt_problem *problem)
 {
     nt_plan_options options;
     nt_plan_choice choice;
@@ -171,7 +172,7 @@ nt_status nt_plan_deform_adhere(nt_plan *plan, const nt_scene *scene, double err
     if (status != NT_OK || plan->source == NT_ADHESION_NONE)
         return NT_E_RANGE;
     nt_plan_options_of(plan, scene, &options);
-    error += nt_plan_doubt_share(plan, error);
+    const double error = of_table + others + nt_plan_doubt_share(plan, of_table, of_table + others);
     drop_others(plan, &options, error);
     if (plan->deformation.holds)
         take_contact(plan, &options, error);

@@ -164,7 +164,7 @@ static nt_status make(nt_plan *plan, const nt_scene *scene, const nt_deform_term
                                    .stiffness = plan->quantity == NT_QUANTITY_STIFFNESS,
                                    .stiffness_scale = plan->scale,
                                    .radius_scale = of->radius_scale,
-                                   .meshes = of->tried->meshes,
+                                   .work = of->tried->work,
                                    .touches = of->touches};
     const nt_status status = nt_deform_table_make(&plan->deformation, &sample, &range);
     if (status != NT_OK || !surrounded)
@@ -172,25 +172,37 @@ static nt_status make(nt_plan *plan, const nt_scene *scene, const nt_deform_term
     return nt_plan_deform_hold(plan, scene, &range) == NT_OK ? NT_OK : NT_E_RANGE; /* no finer one would do */
 }
 
-static int is_same(double a, double b)
+static int is_end(const nt_deform_end *end, const nt_deform_end *wanted)
 {
-    return fabs(a - b) <= 1e-12 * fabs(b);
+    const double rounding = 1e-12;
+    return fabs(end->tolerance - wanted->tolerance) <= rounding * wanted->tolerance &&
+           fabs(end->scale - wanted->scale) <= rounding * wanted->scale && end->surrounded == wanted->surrounded;
 }
 
-/* Makes a table, unless it is known to come to no end. */
+/* Makes a table, unless it is there already, or known to come to no end. */
 static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_deform_terms *in, const nt_deform_wanted *of)
 {
-    const int surrounded = adheres(plan) && nt_plan_is_surrounded(plan, scene);
-    nt_deform_tried *tried = plan->ratio == 1.0 && !of->touches ? of->tried : NULL;
-    for (int i = 0; tried && i < tried->count; ++i) {
-        const nt_deform_end *end = &tried->end[i];
-        if (is_same(end->tolerance, of->tolerance) && is_same(end->scale, plan->scale) && end->surrounded == surrounded)
-            return end->status;
+    nt_deform_end end = {of->tolerance, plan->scale, adheres(plan) && nt_plan_is_surrounded(plan, scene), NT_OK};
+    nt_deform_tried *tried = of->tried;
+    if (plan->ratio != 1.0 || of->touches)
+        return make(plan, scene, in, of);
+    for (int i = 0; i < tried->count; ++i)
+        if (is_end(&tried->end[i], &end))
+            return tried->end[i].status;
+    if (is_end(&tried->last, &end)) {
+        plan->deformation = tried->table;
+        return NT_OK;
     }
-    const nt_status status = make(plan, scene, in, of);
-    if (status != NT_OK && tried && tried->count < NT_DEFORM_TRIED)
-        tried->end[tried->count++] = (nt_deform_end){of->tolerance, plan->scale, surrounded, status};
-    return status;
+    if (tried->work && !(*tried->work > 0.0))
+        return NT_E_NO_CONVERGENCE;
+    end.status = make(plan, scene, in, of);
+    const int was_stopped = tried->work && !(*tried->work > 0.0);
+    if (end.status == NT_OK) {
+        tried->last = end;
+        tried->table = plan->deformation;
+    } else if (tried->count < NT_DEFORM_TRIED && !was_stopped)
+        tried->end[tried->count++] = end;
+    return end.status;
 }
 
 /* Tables have the tolerances of one ladder, so that a looser demand can have every table that a stricter one can. */
@@ -245,14 +257,15 @@ nt_status nt_plan_deform_compose(nt_plan *plan, const nt_scene *scene, double wo
     return NT_OK;
 }
 
-/* The table is there: contact, facts and words. */
-static nt_status compose(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
+/* The table is there: contact, facts and words. Errors of it, and of all that is in no table, as shares of the demand.
+ */
+static nt_status compose(nt_plan *plan, const nt_scene *scene, double of_table, double others, nt_problem *problem)
 {
     const double budget = plan->demand.budget;
     nt_deform_join(plan, &plan->deformation);
     if (adheres(plan))
-        return nt_plan_deform_adhere(plan, scene, error, problem);
-    describe(plan, error);
+        return nt_plan_deform_adhere(plan, scene, of_table, others, problem);
+    describe(plan, of_table + others);
     if (budget > 0.0 && plan->cost > budget * NT_BUDGET_ROUNDS)
         return nt_problem_refuse(problem, nt_demand_budget(budget, plan->cost));
     nt_deform_facts(plan, scene->range.maximum_load);
@@ -308,7 +321,7 @@ static nt_status deform_within(const nt_plan *plan, const nt_scene *scene, const
         status = nt_plan_deform_over(made, scene, of, most, &worst, &reason);
     made->quantity = of->quantity; /* the tables are made */
     if (status == NT_OK)
-        status = compose(made, scene, error + PARTS * of->tolerance + worst.error, &reason);
+        status = compose(made, scene, PARTS * of->tolerance + worst.error, error, &reason);
     if (status != NT_OK)
         return reason.field ? nt_problem_refuse(problem, reason) : refuse_modulus(plan, scene, problem);
     take_worst(made, &worst);

@@ -95,7 +95,7 @@ typedef struct nt_deform_solver {
     double reach;                /* of the law outside an adhesive contact [m] */
     double end;                  /* r^2 - a^2 where its adhesion ends [m^2] */
     int left;                    /* meshes that may still be made */
-    int *meshes;                 /* and by all tables together; NULL: any */
+    double *work;                /* nt_deform_tried */
     double end_slope;            /* of the gap there over h0, over ln of it; 0: not known [-] */
     double share;                /* of the law that acts, on the way to all of it [-] */
     double kink[NT_DEFORM_ENDS]; /* x of the ends of the law [m^2] */
@@ -103,10 +103,15 @@ typedef struct nt_deform_solver {
     double gap[NT_DEFORM_NODES]; /* [m] */
     double A[NT_DEFORM_NODES + 1][NT_DEFORM_NODES + 1];
 } nt_deform_solver;
+#define NT_DEFORM_MESH_WORK 1.0 /* of a full one [work of nt_deform_tried] */
+#define NT_DEFORM_LAYER_WORK 2.0
 /* Whether another mesh may be made. */
 static inline int nt_deform_may_mesh(nt_deform_solver *s)
 {
-    return --s->left > 0 && (!s->meshes || --*s->meshes > 0);
+    const double of_full = (double)s->mesh.count / NT_DEFORM_NODES;
+    if (s->work)
+        *s->work -= of_full * of_full * (s->sample->thickness > 0.0 ? NT_DEFORM_LAYER_WORK : NT_DEFORM_MESH_WORK);
+    return --s->left > 0 && (!s->work || *s->work > 0.0);
 }
 /* The law of the sample at a gap [m]. */
 static inline nt_pressure nt_deform_law(const nt_deform_solver *s, double gap)
@@ -122,7 +127,7 @@ static inline double nt_deform_outer_gap(const nt_deform_solver *s)
 
 /* What the pressure in contact does at x outside [m], and its slope in h. */
 double nt_deform_rim(const nt_deform_solver *s, double h, double x, double *slope);
-/* Solves A y = b in place, n x n: Gauss with row pivots; 0 where A is singular. */
+/* Solves A y = b in place, n x n: Gauss with row pivots; 0 where A is singular, or no work is left. */
 int nt_deform_eliminate(nt_deform_solver *s, double *b, int n);
 
 /* What an equilibrium is on its mesh. */
@@ -171,7 +176,7 @@ typedef struct nt_deform_range {
     int stiffness;            /* k is held to the tolerance, too, over max(|k|, stiffness_scale); a finer mesh */
     double stiffness_scale;   /* [N/m] */
     double radius_scale;      /* above 0: so is a, over max(a, radius_scale) [m] */
-    int *meshes;              /* nt_deform_tried */
+    double *work;             /* nt_deform_tried */
     int touches;              /* goes on to where the bodies touch, at a larger load, too */
 } nt_deform_range;
 nt_status nt_deform_table_make(nt_deform_table *table, const nt_deform_sample *sample, const nt_deform_range *range);

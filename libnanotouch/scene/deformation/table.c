@@ -278,7 +278,7 @@ nt_status nt_deform_table_make(nt_deform_table *table, const nt_deform_sample *s
     m.solver.sample = sample;
     m.solver.tolerance = MESH * range->tolerance * (range->stiffness ? NT_DEFORM_STIFFER : 1.0);
     m.solver.scale = range->scale;
-    m.solver.meshes = range->meshes;
+    m.solver.work = range->work;
     *table = empty;
     table->touch = -INFINITY;
     table->layered = sample->thickness > 0.0;
@@ -371,7 +371,7 @@ nt_status nt_deform_table_hold(nt_deform_table *table, const nt_deform_sample *s
                                double radius)
 {
     maker m = {.table = table, .range = range, .hold = NT_DEFORM_CONTACT, .end = INFINITY};
-    m.solver.meshes = range->meshes;
+    m.solver.work = range->work;
     table->apart = table->count;
     nt_status status = nt_deform_begin_contact(&m.solver, sample, radius);
     const double fold = status == NT_OK ? find_release(&m, radius) : (double)NAN;
