@@ -12,9 +12,10 @@
 #define STRICTEST 1e-12
 #define FARTHER 1.25 /* ratio of gaps that are tried, where a sample jumps */
 /* What may be spent on tables [work of nt_deform_tried], so that a refusal takes no more than 0.5 s, at any demand. */
-#define WORK_OF_ONE 600.0 /* plan that is tried */
-#define WORK 1500.0       /* on an accuracy; on a change */
-#define OVER_RELIEF 10.0  /* times as much, where each plan makes the tables of many radii */
+#define WORK_OF_ONE 500.0 /* plan that is tried */
+#define WORK 1500.0       /* on an accuracy */
+#define WORK_OF_CHANGE 700.0
+#define OVER_RELIEF 10.0 /* times as much, where each plan makes the tables of many radii */
 enum { SAID = 3, FARTHER_TRIES = 24 };
 
 /* The law that presses most on a sample that does not keep still, or whose pull it jumps to. */
@@ -191,7 +192,7 @@ static int is_of_use(const nt_scene *scene, const char *name, double value)
 
 nt_remedy nt_plan_remedy(const nt_plan_inputs *inputs)
 {
-    double left = work_of(inputs, WORK);
+    double left = work_of(inputs, WORK_OF_CHANGE);
     for (size_t i = 0; i < sizeof changes / sizeof *changes; ++i) {
         search s = search_of(inputs, NULL, &left);
         const nt_field *field = nt_scene_field(changes[i].field);
@@ -213,7 +214,7 @@ static nt_problem of_jump(const nt_plan *plan, const nt_plan_inputs *inputs)
         nt_problem_of(field->name, field->unit, inputs->scene->range.minimum_gap, INFINITY, NT_DEFORM_FARTHEST);
     problem.code = NT_PROBLEM_JUMPS;
     problem.cause = name_of(strongest(plan, 1));
-    double gap = nt_plan_jump_gap(plan), left = work_of(inputs, WORK);
+    double gap = nt_plan_jump_gap(plan), left = work_of(inputs, WORK_OF_CHANGE);
     for (int i = 0; i < FARTHER_TRIES && !problem.remedy.field; ++i) {
         search s = search_of(inputs, NULL, &left);
         gap = printed(FARTHER * gap);

@@ -50,8 +50,8 @@ static void errors_have_the_scale_of_their_quantity(void **state)
 }
 
 /* Contact without adhesion is off by 1e-12 of its force, of which the demanded whole is 1 + T/S: T the strongest pull
- * of all other terms, each of which is tried alone; sampled, with 5 % to spare. Bodies are rigid: contact
- * has no form of its own on a sample that deforms. */
+ * of all other terms, each of which is tried alone; sampled, with 5 % to spare. Under a hydration that pulls the sample
+ * deforms, and contact has no form of its own. */
 static void the_error_of_contact_knows_every_pull_beside_it(void **state)
 {
     (void)state;
@@ -70,8 +70,6 @@ static void the_error_of_contact_knows_every_pull_beside_it(void **state)
         scene.sample.surface_potential = n == 3 ? -0.05 : 0.0;
         if (n == 1)
             scene.tip.conducting = scene.sample.conducting = scene.sample.grounded = 1;
-        scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13; /* nothing deforms, ... */
-        scene.range.maximum_load = 1e-12; /* ... at a load at which what the pull moves the surface by is not felt */
         const nt_demand exact = {.bound = NT_BOUND_EXACT};
         assert_int_equal(make(&plan, &scene, &exact), NT_OK);
         double pull = 0.0;
