@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/problem.h"
 #include "rheology/kernel.h"
 
 #define FIELD(path, ...) NT_FIELD_NAMED("rheology." #path, nt_rheology, path, __VA_ARGS__)
@@ -55,7 +56,7 @@ nt_status nt_rheology_check(const nt_rheology *rheology, nt_problem *problem)
     const int counted = rheology->kind == NT_RHEOLOGY_PRONY;
     if (counted && !(rheology->arm_count >= 1 && rheology->arm_count <= NT_RHEOLOGY_ARMS)) {
         if (problem != NULL)
-            *problem = (nt_problem){"rheology.arm_count", "", rheology->arm_count, 1.0, NT_RHEOLOGY_ARMS};
+            *problem = nt_problem_of("rheology.arm_count", "", rheology->arm_count, 1.0, NT_RHEOLOGY_ARMS);
         return NT_E_RANGE;
     }
     return kernels[rheology->kind]->check(rheology, problem);

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "core/problem.h"
 #include "rheology/run.h"
 #include "rheology/springs.h"
 
@@ -77,22 +78,22 @@ static nt_status check_path(const nt_viscoelastic_path *path, nt_time_range *ran
 {
     const double *t = path->times, *z = path->positions, inf = (double)INFINITY;
     if (path->count < 2)
-        return wrong(problem, NT_E_RANGE, (nt_problem){"count", "", (double)path->count, 2.0, inf});
+        return wrong(problem, NT_E_RANGE, nt_problem_of("count", "", (double)path->count, 2.0, inf));
     if (!isfinite(path->contact))
-        return wrong(problem, NT_E_NOT_FINITE, (nt_problem){"contact", "m", path->contact, -inf, inf});
+        return wrong(problem, NT_E_NOT_FINITE, nt_problem_of("contact", "m", path->contact, -inf, inf));
     range->shortest = inf;
     for (long i = 0; i < path->count; i++) {
         if (!isfinite(t[i]))
-            return wrong(problem, NT_E_NOT_FINITE, (nt_problem){"times", "s", t[i], -inf, inf});
+            return wrong(problem, NT_E_NOT_FINITE, nt_problem_of("times", "s", t[i], -inf, inf));
         if (!isfinite(z[i]))
-            return wrong(problem, NT_E_NOT_FINITE, (nt_problem){"positions", "m", z[i], -inf, inf});
+            return wrong(problem, NT_E_NOT_FINITE, nt_problem_of("positions", "m", z[i], -inf, inf));
         if (i > 0 && !(t[i] > t[i - 1]))
-            return wrong(problem, NT_E_RANGE, (nt_problem){"times", "s", t[i], t[i - 1], inf});
+            return wrong(problem, NT_E_RANGE, nt_problem_of("times", "s", t[i], t[i - 1], inf));
         if (i > 0)
             range->shortest = fmin(range->shortest, t[i] - t[i - 1]);
     }
     if (!(z[0] <= path->contact))
-        return wrong(problem, NT_E_RANGE, (nt_problem){"positions[0]", "m", z[0], -inf, path->contact});
+        return wrong(problem, NT_E_RANGE, nt_problem_of("positions[0]", "m", z[0], -inf, path->contact));
     range->longest = t[path->count - 1] - t[0];
     range->shortest *= FRACTION;
     return NT_OK;

@@ -38,7 +38,7 @@ TIERS = (0.3, 1e-2, 1e-3)
 """demands whose plans are tried, beside everything exact"""
 DEMANDS = (1e-1, 1e-2, 1e-4)
 """demands for which the choice of a session is marked; its other options are the defaults"""
-EXACT: dict[str, Any] = {"relative_accuracy": 0.0}
+EXACT: dict[str, Any] = {"bound": "exact"}
 """a session whose plan has every law in full"""
 CLEARANCE, DEPTH = 2e-9, 6e-9
 """of the tip at the start, and how far the hand moves the stage towards the sample and away [m]"""
