@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/problem.h"
 #include "core/roots.h"
 
 nt_status nt_prony_check(const nt_rheology *rheology, int arms, nt_problem *problem)
@@ -18,12 +19,9 @@ nt_status nt_prony_check(const nt_rheology *rheology, int arms, nt_problem *prob
     } of[2] = {{"rheology.arm_moduli", "Pa", 1e-3, 1e13}, {"rheology.relaxation_times", "s", 1e-9, 1e9}};
     for (int k = 0; k < 2 * arms; k++) {
         const double value = k % 2 ? rheology->relaxation_times[k / 2] : rheology->arm_moduli[k / 2];
-        const nt_problem found = {of[k % 2].name, of[k % 2].unit, value, of[k % 2].minimum, of[k % 2].maximum};
-        if (value >= found.minimum && value <= found.maximum)
-            continue;
-        if (problem != NULL)
-            *problem = found;
-        return isfinite(value) ? NT_E_RANGE : NT_E_NOT_FINITE;
+        const double minimum = of[k % 2].minimum, maximum = of[k % 2].maximum;
+        if (!(value >= minimum && value <= maximum))
+            return nt_problem_set(problem, of[k % 2].name, of[k % 2].unit, value, minimum, maximum);
     }
     return NT_OK;
 }
