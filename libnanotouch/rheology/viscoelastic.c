@@ -32,7 +32,7 @@ static const nt_field fields[] = {
 static nt_status refuse(nt_problem *problem, const char *field, double value, double valid)
 {
     if (problem != NULL)
-        *problem = (nt_problem){field, "", value, valid, valid};
+        *problem = nt_problem_of(field, "", value, valid, valid);
     return NT_E_RANGE;
 }
 
