@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/problem.h"
 #include "core/variants.h"
 #include "nanotouch/viscoelastic_loop.h"
 #include "rheology/springs.h"
@@ -42,13 +43,14 @@ static nt_status check(const nt_viscoelastic *contact, const nt_viscoelastic_dem
     if (status != NT_OK)
         return status;
     if (demand->springs < 8 || demand->springs > NT_LOOP_SPRINGS)
-        return refuse(problem, NT_E_RANGE, (nt_problem){"springs", "", demand->springs, 8.0, NT_LOOP_SPRINGS});
+        return refuse(problem, NT_E_RANGE, nt_problem_of("springs", "", demand->springs, 8.0, NT_LOOP_SPRINGS));
     if (!(demand->longest_time > demand->period))
         return refuse(problem, NT_E_RANGE,
-                      (nt_problem){"longest_time", "s", demand->longest_time, demand->period, 1e9});
+                      nt_problem_of("longest_time", "s", demand->longest_time, demand->period, 1e9));
     const double deepest = nt_profile_make(&contact->shape, contact->thickness).deepest;
     if (demand->max_indentation > deepest)
-        return refuse(problem, NT_E_RANGE, (nt_problem){"max_indentation", "m", demand->max_indentation, 0.0, deepest});
+        return refuse(problem, NT_E_RANGE,
+                      nt_problem_of("max_indentation", "m", demand->max_indentation, 0.0, deepest));
     return NT_OK;
 }
 
@@ -63,7 +65,7 @@ nt_status nt_viscoelastic_bed_make(const nt_viscoelastic *contact, const nt_visc
     status = nt_rheology_discretize(&contact->rheology, &range, demand->kernel_error, &spectrum);
     if (status != NT_OK || spectrum.count > NT_LOOP_ARMS)
         return refuse(problem, NT_E_CAPACITY,
-                      (nt_problem){"kernel_error", "", demand->kernel_error, spectrum.error, 0.1});
+                      nt_problem_of("kernel_error", "", demand->kernel_error, spectrum.error, 0.1));
     *bed = (nt_viscoelastic_bed){.arms = spectrum.count,
                                  .period = demand->period,
                                  .max_indentation = demand->max_indentation,

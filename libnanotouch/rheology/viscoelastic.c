@@ -247,6 +247,6 @@ nt_status nt_viscoelastic_run(const nt_viscoelastic *contact, const nt_viscoelas
         status = nt_springs_run(&run, path, put, result);
     }
     if (status == NT_E_RANGE)
-        return wrong(problem, status, (nt_problem){"indentation", "m", run.depth, 0.0, run.profile.deepest});
+        return wrong(problem, status, nt_problem_of("indentation", "m", run.depth, 0.0, run.profile.deepest));
     return status;
 }

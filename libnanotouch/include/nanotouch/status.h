@@ -65,7 +65,6 @@ NT_API const char *nt_status_message(nt_status status);
     X(DENTS_GROOVE, "a groove wider than half of the tip")                                                             \
     X(FRICTION_SHAPE, "of a cone or punch that adheres; its shear strength will do")                                   \
     X(BOUND_OF_REAL_SLAVE, "a plan whose bound is not known, which no real slave is armed with")                       \
-    X(GROWS_AGAIN, "a contact that has shrunk grows again, which this law does not follow")                            \
     X(FORCE_TABLE_SURFACE, "a plan over a surface has a force of each place, a table that of a flat")                  \
     X(FORCE_TABLE_DENTS, "a sample that keeps dents has a force of all that was pressed before")                       \
     X(FORCE_TABLE_SINGLE, "a force that single precision cannot hold")                                                 \
