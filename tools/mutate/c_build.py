@@ -60,8 +60,13 @@ class Build:
             by_file.setdefault(mutant.path, {})[number] = mutant
         tracked = self._tracked()
         for path in self.tree.rglob("*"):
-            if path.is_file() and str(path.relative_to(self.tree)) not in tracked:
+            name = str(path.relative_to(self.tree))
+            if path.is_file() and name not in tracked and not name.startswith("build/"):
                 path.unlink()
+        fetched = self.tree / "build/deps"  # sources of libgpiod, where the system has none
+        if (self.root / "build/deps").exists() and not fetched.exists():
+            fetched.parent.mkdir(parents=True, exist_ok=True)
+            fetched.symlink_to(self.root / "build/deps")
         for name in tracked:
             content = (self.root / name).read_bytes()
             if name in by_file:
