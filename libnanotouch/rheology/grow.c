@@ -8,6 +8,7 @@
 
 enum { ITERATIONS = 60 };
 #define CONVERGED 1e-8
+#define ROUNDING 1e-14
 
 NT_VARIANTS double nt_run_relax(const nt_run *run, double *x, double (*x_by)[NT_ARMS], double *sum_by)
 {
@@ -52,7 +53,7 @@ void nt_run_piece_by(const nt_profile_value *from, const nt_profile_value *to, d
 static nt_status solve(const nt_run *run, double held, double base, double *depth, nt_profile_value *end)
 {
     const double *sum = run->step.sum, softness = run->compliance * run->factor, from = run->depth;
-    double to = softness == 0.0 ? base : from + run->follows * (base - run->base);
+    double to = softness == 0.0 ? base : from + run->follows * fmax(base - run->base, 0.0); /* it grows */
     for (int i = 0; i < ITERATIONS; i++) {
         *end = nt_profile_at(&run->profile, to);
         if (softness == 0.0) {
@@ -65,7 +66,8 @@ static nt_status solve(const nt_run *run, double held, double base, double *dept
         const double force = held + d[0] * sum[0] + d[1] * sum[1] + d[2] * sum[2];
         const double stiffness = slope[0] * sum[0] + slope[1] * sum[1] + slope[2] * sum[2];
         const double change = -(to + softness * force - base) / (1.0 + softness * stiffness);
-        if (fabs(change) <= CONVERGED * fabs(base)) { /* what is left is its square */
+        const double rounding = softness * fabs(held) / (1.0 + softness * stiffness);
+        if (fabs(change) <= CONVERGED * fabs(to) + ROUNDING * rounding) { /* what is left is its square */
             *depth = to + change;
             end->g += change * (end->slope + 0.5 * change * end->curvature);
             end->slope += change * end->curvature;

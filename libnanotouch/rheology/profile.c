@@ -48,7 +48,7 @@ static nt_profile_value sphere(double radius, double indentation)
 nt_profile_value nt_profile_at(const nt_profile *profile, double indentation)
 {
     if (profile->kind == NT_SHAPE_PUNCH)
-        return (nt_profile_value){profile->scale * fmax(indentation, 0.0), profile->scale, 0.0};
+        return (nt_profile_value){profile->scale * indentation, profile->scale, 0.0};
     if (!(indentation > 0.0))
         return (nt_profile_value){0.0, 0.0, 0.0};
     if (profile->kind == NT_SHAPE_SPHERE)

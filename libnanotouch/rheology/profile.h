@@ -19,7 +19,7 @@ typedef struct nt_profile_value {
 } nt_profile_value;
 
 nt_profile nt_profile_make(const nt_shape *shape, double thickness);
-/* At an indentation above 0; all 0 at 0 and below but a punch's, whose face is there. */
+/* At an indentation above 0; all 0 at 0 and below but that of a punch, which is straight through 0. */
 nt_profile_value nt_profile_at(const nt_profile *profile, double indentation);
 
 #endif

@@ -137,7 +137,7 @@ static int balance(const nt_run *run, const sums *of, piece *inside, double base
         const double force = of->held + outer * A * way - pulled(inside, y);
         const double change = (run->depth + way + softness * force - base) / (1.0 + softness * A * slope_at(inside, y));
         way -= change;
-        if (fabs(change) <= CONVERGED * fabs(base)) /* what is left is its square */
+        if (fabs(change) <= CONVERGED * fabs(run->depth)) /* what is left is its square */
             break;
     }
     *moved = way;
@@ -314,11 +314,11 @@ NT_VARIANTS static nt_status move(nt_run *run, sums *of, double time, double bas
     }
     const double edge = of->edge + of->stiffness * way, y = place_of_zero(&inside, edge);
     const double slope = inside.outer[NT_RUN_SLOPE], *psi = run->step.psi[0];
-    run->force = run->factor * (of->held + slope * of->stiffness * way - pulled(&inside, y));
+    run->force = fmax(run->factor * (of->held + slope * of->stiffness * way - pulled(&inside, y)), 0.0);
     derive(run, of, &inside, way, y);
     nt_arms_add(run->arms.width, run->S, way, psi);
     nt_arms_add(run->arms.width, run->Z, slope * way, psi);
-    run->depth += way;
+    run->depth = run->compliance > 0.0 ? run->depth + way : base;
     return edge > 0.0 && way > 0.0 ? NT_E_NO_SOLUTION : NT_OK;
 }
 

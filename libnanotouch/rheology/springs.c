@@ -9,7 +9,7 @@
 #include "core/variants.h"
 
 enum { SPRINGS = 128, HALVINGS = 100, ITERATIONS = 200, ROWS = 4 };
-#define CONVERGED 1e-14
+#define CONVERGED 1e-12
 #define FLOOR 1e-25 /* added and taken away: no denormal numbers */
 
 typedef double row[SPRINGS];
@@ -17,9 +17,10 @@ typedef double row[SPRINGS];
 /* Within the caller's workspace. `by` are derivatives: of s_k, then of what is held and of the way. */
 typedef struct springs {
     int count, width, parameters;
-    row *place; /* depth, weight, held, way */
-    row *s;     /* one row an arm; that of arm 0, of rate 0, is the spring's length u */
-    row *by;    /* width + 2 rows for each parameter */
+    double deepest; /* max of the base's positions over first touch [m] */
+    row *place;     /* depth, weight, held, way */
+    row *s;         /* one row an arm; that of arm 0, of rate 0, is the spring's length u */
+    row *by;        /* width + 2 rows for each parameter */
 } springs;
 
 enum { DEPTH, WEIGHT, HELD, WAY };
@@ -48,11 +49,12 @@ static springs laid_out(const nt_run *run, double deepest, double *workspace)
     springs of = {.count = run->profile.kind == NT_SHAPE_PUNCH ? 1 : SPRINGS,
                   .width = run->arms.width,
                   .parameters = run->arms.parameters,
+                  .deepest = deepest,
                   .place = (row *)workspace};
     of.s = of.place + ROWS;
     of.by = of.s + of.width;
     memset(workspace, 0, sizeof(double) * (size_t)nt_springs_workspace(of.parameters));
-    nt_springs_place(&run->profile, deepest, of.count, of.place[DEPTH], of.place[WEIGHT]);
+    nt_springs_place(&run->profile, fmin(deepest, run->profile.deepest), of.count, of.place[DEPTH], of.place[WEIGHT]);
     return of;
 }
 
@@ -123,7 +125,7 @@ static nt_status balance(nt_run *run, const springs *of, double base)
         const double force = pressed(run, of, tip, &stiffness);
         const double change = (tip + softness * force - base) / (1.0 + softness * stiffness);
         tip -= change;
-        if (fabs(change) <= CONVERGED * fabs(base)) {
+        if (fabs(change) <= CONVERGED * of->deepest) {
             run->depth = tip;
             return NT_OK;
         }
@@ -185,7 +187,7 @@ nt_status nt_springs_run(nt_run *run, const nt_viscoelastic_path *path, nt_sprin
     double deepest = 0.0;
     for (long i = 0; i < path->count; i++)
         deepest = fmax(deepest, path->positions[i] - path->contact);
-    const springs of = laid_out(run, fmin(deepest, run->profile.deepest), path->workspace);
+    const springs of = laid_out(run, deepest, path->workspace);
     nt_status status = NT_OK;
     run->time = path->times[0];
     for (long i = 1; i < path->count && status == NT_OK; i++) {

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+import pickle
 
 import mpmath
 import nanotouch as nt
@@ -330,5 +331,34 @@ def test_noise_in_a_pause() -> None:
     assert np.sqrt((difference**2).mean(axis=0)).max() < 5e-3  # by `contact` the springs' steps show
 
 
+def test_any_history_has_an_answer() -> None:
+    """Levers far softer than the sample, steep laws, punches: in balance, never below 0, derivatives finite."""
+    rng = np.random.default_rng(4)
+    for draw in range(600):
+        laws = (
+            Rheology.power_law(
+                10 ** rng.uniform(1, 7), rng.choice([0.0, rng.uniform(0, 0.85)]), 10 ** rng.uniform(-3, 3)
+            ),
+            Rheology.standard_linear_solid(10 ** rng.uniform(1, 6), 10 ** rng.uniform(1, 6), 10 ** rng.uniform(-6, 4)),
+            Rheology.prony(0.0, 10 ** rng.uniform(1, 6, 3), 10 ** rng.uniform(-6, 4, 3)),
+        )
+        kind = ("paraboloid", "cone", "punch")[rng.integers(3)]
+        shape = Shape(kind, radius=10 ** rng.uniform(-7, -5), half_angle=rng.uniform(0.1, 1.4))
+        time = np.cumsum(10 ** rng.uniform(-1, 1, 60)) * 10 ** rng.uniform(-5, 0)
+        away = (1 - np.abs(np.linspace(-1, 1, 60)), rng.normal(size=60).cumsum(), np.sin(np.linspace(0, 9, 60)))[
+            draw % 3
+        ]
+        position = 10 ** rng.uniform(-9, -6) * (away - away[0])
+        k = 10 ** rng.uniform(-3, 2) if draw % 4 else 0.0
+        found = laws[rng.integers(3)].force(time, position, shape, spring_constant=k, derivatives=True)
+        assert (found.force >= 0.0).all()
+        assert np.isfinite(found.force).all()
+        assert found.derivatives is not None
+        assert np.isfinite(found.derivatives).all()
+        balance = found.indentation + (found.force / k if k else 0.0) - position
+        assert np.abs(balance).max() <= 1e-9 * np.abs(position).max()
+
+
 def test_package_knows_it() -> None:
+    assert pickle.loads(pickle.dumps(SERIES)) == SERIES
     assert nt.Rheology is nt.rheology.Rheology

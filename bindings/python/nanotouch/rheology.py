@@ -101,6 +101,9 @@ class Rheology:
             object.__setattr__(self, name, tuple(float(value) for value in getattr(self, name)))
         _ = self._core  # the C library checks the values
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), tuple(getattr(self, name) for name in self.__dataclass_fields__)
+
     @cached_property
     def _core(self) -> _core.Rheology:
         if self.kind not in KINDS_OF_KERNEL:
