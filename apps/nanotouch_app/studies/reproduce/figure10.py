@@ -199,12 +199,15 @@ def _draw(figure: Any, columns: dict[str, Floats]) -> None:
             panels, (("load [N]", 1e9), ("contact radius [m]", 1e9), ("m = c/a []", 1.0)), strict=True
         ):
             y = columns[f"{name} {what}"] * scale
-            panel.plot(x, np.where(inside, y, np.nan), color=colour, ls=style, label=f"{modulus / 1e9:g} GPa")
-            panel.plot(x, np.where(inside, np.nan, y), color=colour, ls=style, alpha=0.5)
+            label = f"{modulus / 1e9:g} GPa"
+            for part, alpha in ((inside, 1.0), (~inside, 0.5)):
+                if np.isfinite(y[part]).any():
+                    panel.plot(x, np.where(part, y, np.nan), color=colour, ls=style, alpha=alpha, label=label)
+                    label = "_pale"
     across = r"stage displacement $\Delta$ (nm)"
     drawing.zero(panels[0])
     panels[1].axhline(LARGE * paper.TIP.value * 1e9, color=drawing.GREY, lw=0.8, ls="--")
-    panels[2].set_ylim(0.95, 3.0)
+    panels[2].set_yscale("log")
     drawing.dress(panels[0], "Load; pale: a/R above 0.3", across, "load $P$ (nN)", "upper left")
     drawing.dress(panels[1], "Contact radius", across, "contact radius $a$ (nm)", None)
     drawing.dress(panels[2], "Outer over inner radius", across, "$m = c/a$ (1)", None)
