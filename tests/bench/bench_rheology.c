@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "../c/larger.h"
 #include "nanotouch/viscoelastic_loop.h"
 
 enum { POINTS = 2001, RUNS = 200, TICKS = 200, ROOM = 400000 };
@@ -37,7 +38,7 @@ static double curve(const nt_viscoelastic *contact, int runs, int with_derivativ
         const double before = now();
         if (nt_viscoelastic_run(contact, &path, &result, &problem) != NT_OK)
             return NAN;
-        least = fmin(least, (now() - before) / POINTS);
+        least = smaller(least, (now() - before) / POINTS);
     }
     return least;
 }
@@ -59,7 +60,7 @@ static double loop(const nt_viscoelastic *contact, int springs)
         const double before = now();
         for (int j = 0; j < TICKS; j++)
             (void)nt_viscoelastic_advance(&bed, &state, 0.9e-6 + 1e-9 * (j % 7));
-        least = fmin(least, (now() - before) / TICKS);
+        least = smaller(least, (now() - before) / TICKS);
     }
     return least;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "larger.h"
 #include "nanotouch/material.h"
 #include "nanotouch/random.h"
 #include "nanotouch/viscoelastic_loop.h"
@@ -53,8 +54,8 @@ static double distance_to_ting(const nt_viscoelastic *contact, int springs)
     assert_int_equal(nt_viscoelastic_run(contact, &path, &result, &problem), NT_OK);
     for (int i = 0; i < TICKS; i++) {
         assert_int_equal(nt_viscoelastic_advance(&bed, &state, positions[i]), NT_OK);
-        worst = fmax(worst, fabs(state.force - forces[i]));
-        most = fmax(most, forces[i]);
+        worst = larger(worst, fabs(state.force - forces[i]));
+        most = larger(most, forces[i]);
     }
     free(workspace);
     return worst / most;
@@ -122,7 +123,7 @@ static nt_viscoelastic any_contact(nt_random *random)
     made.shape.kind = (nt_shape_kind)(int)draw(random, 0.0, 3.999);
     made.shape.half_angle = draw(random, 0.2, 1.2);
     made.rheology.equilibrium_modulus = draw(random, -200.0, 1e3);
-    made.rheology.equilibrium_modulus = fmax(made.rheology.equilibrium_modulus, 0.0);
+    made.rheology.equilibrium_modulus = larger(made.rheology.equilibrium_modulus, 0.0);
     made.rheology.arm_count = 1 + (int)draw(random, 0.0, 7.999);
     for (int k = 0; k < NT_RHEOLOGY_ARMS; k++) {
         made.rheology.arm_moduli[k] = draw(random, 1.0, 1e3);
@@ -143,10 +144,10 @@ static void no_motion_gives_energy(void **unused)
         const double stride = 1e-6 * pow(10.0, draw(&random, -3.0, 0.0));
         double tip = 0.0, stored = 0.0, turned_over = 0.0;
         for (int i = 0; i < HISTORY; i++) {
-            const double to = fmin(fmax(tip + draw(&random, -stride, stride), -1e-6), 1e-6);
+            const double to = smaller(larger(tip + draw(&random, -stride, stride), -1e-6), 1e-6);
             assert_int_equal(nt_viscoelastic_advance(&bed, &state, to), NT_OK);
             const double work = state.force * (to - tip), now = nt_viscoelastic_stored(&bed, &state);
-            turned_over = fmax(turned_over, fmax(fabs(work), now));
+            turned_over = larger(turned_over, larger(fabs(work), now));
             assert_true(work - (now - stored) >= -1e-12 * turned_over); /* rounding */
             assert_true(state.force >= 0.0);
             assert_true(state.stiffness <= nt_viscoelastic_max_stiffness(&bed, to) * (1.0 + 1e-12));

@@ -17,8 +17,6 @@ Floats = NDArray[float64]
 LawColumns = tuple[Floats, Floats, Floats, Floats]
 
 version: str
-CLEARLY_FELT: float
-RINGING_MOST: float
 reasons: tuple[str, ...]
 lambda_per_tabor: float
 lambda_min: float

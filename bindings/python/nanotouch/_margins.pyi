@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 from nanotouch._core import Rig, Settings
 
+CLEARLY_FELT: float
+RINGING_MOST: float
+
 def motor_bound(rig: Rig, settings: Settings, /) -> dict[str, float]: ...
 def margins(rig: Rig, settings: Settings, stiffness: float, mode: str, /) -> dict[str, Any]: ...
 def calm(rig: Rig, settings: Settings, stiffness: float, /) -> dict[str, Any]: ...

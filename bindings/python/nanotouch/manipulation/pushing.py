@@ -131,9 +131,8 @@ class World:
     def wait(self, duration: float) -> None:
         """The direction of the drift wanders by 3 degrees in a second (root of time)."""
         self.heading += 0.05 * np.sqrt(duration) * self.random.standard_normal()
-        self.drifted = self.drifted + duration * self.bench.drift * np.array(
-            [np.cos(self.heading), np.sin(self.heading)]
-        )
+        way = np.array([np.cos(self.heading), np.sin(self.heading)])
+        self.drifted = self.drifted + duration * self.bench.drift * way
         self.time += duration
 
     def move(self, points: Floats) -> None:
@@ -384,8 +383,7 @@ def _clear_plan(starts: Floats, targets: Floats, room: float) -> list[tuple[int,
 def _order(starts: Floats, goals: Floats, room: float) -> list[int] | None:
     """An order in which no way comes nearer than `room` to where another one is then; a greedy one is enough, for who
     has arrived stays, and who is free to go now is so until another has arrived."""
-    left, at = set(range(len(starts))), starts.copy()
-    order = []
+    left, at, order = set(range(len(starts))), starts.copy(), []
     while left:
         free = [one for one in sorted(left) if _clear(at, one, goals[one], room)]
         if not free:
