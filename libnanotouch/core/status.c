@@ -56,9 +56,8 @@ static void add_number(writing *w, double value, const char *unit)
 
 static void add_words(writing *w, const nt_problem *problem)
 {
-    const char *words = problem_words[problem->code], *gap = strstr(words, "{}");
-    for (; *words != '\0'; ++words)
-        if (words == gap) {
+    for (const char *words = problem_words[problem->code]; *words != '\0'; ++words)
+        if (words[0] == '{' && words[1] == '}') {
             add(w, problem->cause ? problem->cause : "a law");
             ++words;
         } else {

@@ -97,9 +97,9 @@ typedef struct nt_problem {
     nt_remedy remedy;
 } nt_problem;
 
+enum { NT_PROBLEM_TEXT = 640 }; /* characters that hold every problem in words */
 /* Writes "tip.radius = 20 m: valid is 1e-10 .. 0.001 m" into text (always ended by 0 when size > 0), with the words of
  * the code and the remedy; NT_PROBLEM_TEXT characters hold every one. Returns text. */
-enum { NT_PROBLEM_TEXT = 640 };
 NT_API const char *nt_problem_print(const nt_problem *problem, char *text, unsigned size);
 
 #ifdef __cplusplus
