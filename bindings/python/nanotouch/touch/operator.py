@@ -64,13 +64,15 @@ class Hold(NamedTuple):
 
 def core_input(input: Input | Hold) -> _core.Input:
     """As the C library takes it."""
-    place = [_number(name, getattr(input, name)) for name in ("x", "y", "duration")]
+    x, y, duration = _number("x", input.x), _number("y", input.y), _number("duration", input.duration)
     if isinstance(input, Hold):
-        return _core.Input(0.0, _along(input.master_position, "master_position"), *place)
-    return _core.Input(_along(input.operator_force, "operator_force"), None, *place)
+        return _core.Input(0.0, _along(input.master_position, "master_position"), x, y, duration)
+    return _core.Input(_along(input.operator_force, "operator_force"), None, x, y, duration)
 
 
 def _number(name: str, value: object) -> float:
+    if type(value) is float:  # at once: the protocol below costs microseconds, and this is asked in every period
+        return value
     if isinstance(value, bool | str) or not isinstance(value, SupportsFloat):
         raise InvalidValue(f"input.{name} = {told(value)}: it must be a number")
     return float(value)
@@ -78,6 +80,8 @@ def _number(name: str, value: object) -> float:
 
 def _along(value: object, name: str) -> float | tuple[float, float, float]:
     """A number along z, or three of them."""
+    if type(value) is float:
+        return value
     if not isinstance(value, Sequence | np.ndarray) or isinstance(value, str):
         return _number(name, value)
     if len(value) != 3:
