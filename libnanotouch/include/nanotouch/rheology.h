@@ -38,9 +38,10 @@ NT_API const char *nt_rheology_name(nt_rheology_kind kind);
 /* NT_OK, or NT_E_ARGUMENT / NT_E_NOT_FINITE / NT_E_RANGE with the first offending field in *problem (NULL allowed). */
 NT_API nt_status nt_rheology_check(const nt_rheology *rheology, nt_problem *problem);
 
-/* Of a checked description, at a time >= 0 [s] (below 0: NaN). */
-NT_API double nt_rheology_relaxation(const nt_rheology *rheology, double time);          /* E(t) [Pa] */
-NT_API double nt_rheology_relaxation_integral(const nt_rheology *rheology, double time); /* from 0 to t [Pa s] */
+/* E(t) [Pa] of a checked description, at a time >= 0 [s] (below 0: NaN, here and in the two that follow). */
+NT_API double nt_rheology_relaxation(const nt_rheology *rheology, double time);
+/* The integral of E from 0 to t [Pa s]. */
+NT_API double nt_rheology_relaxation_integral(const nt_rheology *rheology, double time);
 /* J(t), the strain at t under a unit stress since 0 [1/Pa]. */
 NT_API double nt_rheology_creep(const nt_rheology *rheology, double time);
 
@@ -64,17 +65,18 @@ typedef struct nt_time_range {
 NT_API nt_status nt_rheology_discretize(const nt_rheology *rheology, const nt_time_range *range, double error,
                                         nt_spectrum *spectrum);
 
-/* What a fit varies, in this order: power_law: modulus, exponent; the others: equilibrium_modulus, then for each arm
- * its modulus and its relaxation time. */
 enum { NT_RHEOLOGY_PARAMETERS = 1 + 2 * NT_RHEOLOGY_ARMS };
+/* How many parameters a fit varies, in this order: power_law: modulus, exponent; the others: equilibrium_modulus, then
+ * for each arm its modulus and its relaxation time. */
 NT_API int nt_rheology_parameter_count(const nt_rheology *rheology);
-/* Derivative of a spectrum of this description by one of its parameters, its range of times fixed. */
+/* How a spectrum changes with a parameter p of its description. */
 typedef struct nt_spectrum_slope {
-    double equilibrium_modulus;
-    double moduli[NT_SPECTRUM_ARMS];
-    int arm;     /* the one whose rate changes; -1: none */
-    double rate; /* by how much */
+    double equilibrium_modulus;      /* [Pa/unit of p] */
+    double moduli[NT_SPECTRUM_ARMS]; /* [Pa/unit of p] */
+    int arm;                         /* the one whose rate changes; -1: none */
+    double rate;                     /* by how much [1/s/unit of p] */
 } nt_spectrum_slope;
+/* Derivative of a spectrum of this description by one of its parameters, its range of times fixed. */
 NT_API void nt_spectrum_derive(const nt_rheology *rheology, const nt_spectrum *spectrum, int parameter,
                                nt_spectrum_slope *slope);
 

@@ -45,7 +45,7 @@ typedef struct nt_viscoelastic_result {
     double *derivatives; /* of F: rows of 1 + nt_rheology_parameter_count(): by `contact`, then by the parameters of the
                           * rheology in their order [N over the parameter's unit] */
     int arms;            /* of the sum of exponentials */
-    double kernel_error; /* of it, as nt_spectrum.error; the force errs by some tenth of that */
+    double kernel_error; /* of it [1], as nt_spectrum.error; the force errs by some tenth of that */
     int by_springs;      /* 1: a contact that had shrunk grew again, and 128 springs followed it; 3e-4 of F_max */
 } nt_viscoelastic_result;
 
