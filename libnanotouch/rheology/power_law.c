@@ -40,7 +40,8 @@ static double integral(const nt_rheology *rheology, double time)
 
 static double creep(const nt_rheology *rheology, double time)
 {
-    const double beta = rheology->exponent, angle = NT_PI * beta; /* Gamma(1 - beta) Gamma(1 + beta) = angle/sin(angle) */
+    const double beta = rheology->exponent, angle = NT_PI * beta;
+    /* 1/(Gamma(1 - beta) Gamma(1 + beta)) */
     const double reflected = angle > 0.0 ? sin(angle) / angle : 1.0;
     return pow(time / rheology->reference_time, beta) * reflected / rheology->modulus;
 }

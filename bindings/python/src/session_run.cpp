@@ -387,12 +387,11 @@ void bind_session_run(py::module_ &module, py::class_<Session> &type)
                                        "and since the last change");
                  raise_on(status, problem, "rewind");
              })
-        .def("restore",
-             [](Session &self, const Snapshot &kept) {
-                 nt_problem problem{};
-                 const nt_status status =
-                     alone(self, [&](nt_session *h) { return nt_session_restore(h, kept.handle, &problem); });
-                 raise_on(status, problem, "restore: the snapshot was taken with another setup");
-             });
+        .def("restore", [](Session &self, const Snapshot &kept) {
+            nt_problem problem{};
+            const nt_status status =
+                alone(self, [&](nt_session *h) { return nt_session_restore(h, kept.handle, &problem); });
+            raise_on(status, problem, "restore: the snapshot was taken with another setup");
+        });
     bind_state(type);
 }
