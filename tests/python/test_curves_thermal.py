@@ -37,6 +37,16 @@ def test_an_exact_spectrum_gives_the_spring_constant(quality: float) -> None:
     assert found.floor == pytest.approx(FLOOR, rel=1e-4)
 
 
+@pytest.mark.parametrize("order", ["falling", "shuffled"])
+def test_the_order_of_frequencies_does_not_matter(order: str) -> None:
+    """In falling order the resonance was taken for one of negative width: a spring constant of 1e-9 of the true one."""
+    f, density = spectrum(50.0)
+    f, density = np.append(0.0, f), np.append(1e-20, density)
+    way = np.arange(f.size)[::-1] if order == "falling" else np.random.default_rng(2).permutation(f.size)
+    found = curves.thermal_tune(f[way], density[way], averages=10**9, temperature=T, correction=1.0)
+    assert found.spring_constant == pytest.approx(K, rel=1e-4)
+
+
 def test_pulls_have_the_width_that_sigma_says() -> None:
     f, density = spectrum(50.0)
     rng, pulls = np.random.default_rng(1), []

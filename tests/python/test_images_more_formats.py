@@ -293,3 +293,11 @@ def test_real_files_that_were_refused(name: str) -> None:
     shape, size = REAL[name]
     assert shape is None or topography.shape == shape
     assert topography.size == pytest.approx(size, rel=1e-3)
+
+
+def test_a_field_of_another_size_than_its_header_says_is_refused(tmp_path: Path) -> None:
+    """Half the columns stated: it was read sheared."""
+    path = write_gsf(tmp_path / "a.gsf")
+    path.write_bytes(path.read_bytes().replace(f"XRes = {NX}".encode(), f"XRes = {NX // 2}".encode()))
+    with pytest.raises(ReadError, match="bytes long, but its header states"):
+        images.read(path)

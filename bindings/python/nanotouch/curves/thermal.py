@@ -66,7 +66,7 @@ def thermal_tune(
     Parameters
     ----------
     frequency : array_like, shape (n,)
-        Of the first resonance and what surrounds it [Hz]. A value at 0 Hz before all others, the mean, is left out.
+        Of the first resonance and what surrounds it [Hz], in any order. A value at 0 Hz, the mean, is left out.
     density : array_like, shape (n,)
         One-sided power spectral density of the deflection [m^2/Hz].
     averages : int
@@ -77,14 +77,16 @@ def thermal_tune(
         0.971 for a true deflection of the end, 0.817 for an optical lever.
     """
     f, S = as_floats(frequency, "frequency"), as_floats(density, "density")
-    if f.ndim == S.ndim == 1 and f.size and f[0] == 0.0:
-        f, S = f[1:], S[1:]
+    if f.ndim == 1 and f.shape == S.shape:
+        f, S = f[f != 0.0], S[f != 0.0]
     if f.ndim != 1 or f.shape != S.shape or f.size < 16:
         raise InvalidValue(f"frequency, density: shapes {f.shape} and {S.shape}, expected one of at least 16 points")
     for name, values, unit in (("frequency", f, "Hz"), ("density", S, "m^2/Hz")):
         bad = np.flatnonzero(~(np.isfinite(values) & (values > 0.0)))
         if bad.size:
             raise InvalidValue(f"{name}: {values[bad[0]]:g} {unit} at [{bad[0]}], expected positive, finite values")
+    rising = np.argsort(f, kind="stable")
+    f, S = f[rising], S[rising]
     check_temperature(temperature)
     check_between("averages", averages, "", above=0)
     special, optimize = require("scipy.special", "curves"), require("scipy.optimize", "curves")

@@ -40,7 +40,7 @@ def read(file: Path, channel: str | None) -> Plane:
     (ny, nx), size = _shape(file, facts), _size(facts)
     chosen(channels(file), channel, file)
     check_shape(file, (ny, nx))
-    if file.stat().st_size < start + 4 * nx * ny:
+    if file.stat().st_size != start + 4 * nx * ny:
         raise ReadError(f"{file}: {file.stat().st_size} bytes long, but its header states {start + 4 * nx * ny}")
     values = np.fromfile(file, "<f4", nx * ny, offset=start).reshape(ny, nx)[::-1].astype(np.float64)
     pixel_size = None if size is None else (size[0] / ny, size[1] / nx)
