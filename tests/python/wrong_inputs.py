@@ -137,7 +137,7 @@ number.toml         | material | 5 | silicon, silicon nitride
 poisson.toml        | poisson_ratio = 0.6 | -0.99 .. 0.5
 cold.toml           | temperature_K = -5 | ..
 humid.toml          | relative_humidity_percent = 140 | 0 ..
-tail.toml           | hamaker_constant = 1e-17 | ..
+tail.toml           | adhesion.hamaker_constant | = 1e-17 J: valid is 0 .. | works
 nowhere.toml        | nowhere.toml: no such file
 folder.toml         | folder.toml: this is a folder
 pipe.toml           | pipe.toml: this is a device or a pipe
