@@ -15,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nanotouch import plots
 from nanotouch.errors import Error, InvalidValue, MissingExtra
+from nanotouch.plots import panels
 from nanotouch.touch.record import Recording
 from numpy.typing import NDArray
 
@@ -272,3 +273,13 @@ def test_the_legend_of_a_magnified_force_gap_hides_no_title() -> None:
     [legend] = figure.legends
     assert {text.get_text() for text in legend.get_texts()} >= {"approach", "retraction"}
     assert not any(legend.get_window_extent().overlaps(panel.get_tightbbox()) for panel in figure.axes)
+
+
+def test_the_mean_of_a_signal_skips_what_was_not_measured() -> None:
+    """One NaN hid all that followed it."""
+    values = np.arange(3000.0)
+    values[10] = np.nan
+    mean = panels._running_mean(values, 7)
+    assert np.isfinite(mean).all()
+    np.testing.assert_allclose(mean[100:2900], np.arange(100.0, 2900.0), rtol=1e-12)
+    assert np.isnan(panels._running_mean(np.full(50, np.nan), 7)).all()

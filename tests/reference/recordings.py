@@ -6,7 +6,8 @@ counter-based, and every column but the ages (whole nanoseconds now) came out of
 Made anew when a plan no longer depended on the probe: the simulated samples have forces since that it left out. Made
 anew, "faults" alone, when a stop went on lifting while no force can be read and a stage kept to its speed whatever
 fails; the other six kept every bit. Made
-anew, "scan", "requests" and "faults", when a stop's fade became as short as the hand needs. A
+anew, "scan", "requests" and "faults", when a stop's fade became as short as the hand needs. Made
+anew, "requests" alone, when the way that a clutch cuts short no longer went on after it. A
 change of bits is a change of behaviour and has to be meant. Each column is kept as a digest of all its
 bytes (the same machine and build: equal) and as every ``STRIDE``-th row (another libm may round differently)."""
 

@@ -159,7 +159,9 @@ def begins_with(file: Path, mark: bytes) -> bool:
 
 
 def _head(file: Path) -> bytes:
-    """Empty where it cannot be read: who reads it says why."""
+    """Empty where it cannot be read, a pipe (which would wait for ever) included: who reads it says why."""
+    if not file.is_file():
+        return b""
     try:
         with file.open("rb") as stream:
             return stream.read(HEAD)

@@ -32,14 +32,19 @@ _TALKATIVE = ("tifffile", "afmformats.formats", "igor2.binarywave", "igor2.packe
 _HDF5_ENDINGS = (".h5", ".hdf5", ".nc", ".nhf", ".h5-jpk", ".topostats")
 
 
+def refuse_pipe(file: Path) -> None:
+    """Before anything opens it: a pipe would wait for ever."""
+    if file.exists() and not (file.is_file() or file.is_dir()):
+        raise ReadError(f"{file}: this is a device or a pipe, not a file")
+
+
 def checked_path(path: str | PathLike[str]) -> Path:
     """The path of an existing, readable, non-empty file of reasonable size, or :class:`ReadError`."""
     file = Path(fspath(path))
     try:
         if file.is_dir():
             raise ReadError(f"{file}: this is a folder, not a file")
-        if file.exists() and not file.is_file():  # a pipe would wait for ever
-            raise ReadError(f"{file}: this is a device or a pipe, not a file")
+        refuse_pipe(file)
         size = file.stat().st_size
         with file.open("rb"):
             pass

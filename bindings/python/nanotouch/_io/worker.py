@@ -29,6 +29,7 @@ from typing import Any, Protocol, TypeVar, cast, get_args, get_origin
 
 from nanotouch import guard
 from nanotouch._io import transfer
+from nanotouch._io.files import refuse_pipe
 from nanotouch.errors import Error, InvalidValue, MissingExtra, ReadError
 
 Answer = TypeVar("Answer")
@@ -42,6 +43,7 @@ def ask(job: str, file: Path, options: dict[str, Any], expected: type[Answer], p
     """The answer of `job` ("images.read", ...) for `file`, of a type that holds `parts`; :class:`ReadError` whatever
     happens to the worker."""
     check_system(file)
+    refuse_pipe(file)
     limits = guard.LIMITS.of(file)
     request: dict[str, Any] = {"job": job, "file": str(file.absolute()), "options": options, "limits": asdict(limits)}
     kind = (get_args(expected) or (expected,))[0]

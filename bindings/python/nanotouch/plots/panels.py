@@ -53,11 +53,14 @@ def signal(panel: Any, data: tuple[Floats, Floats], colour: str, style: Any, lab
 
 
 def _running_mean(values: Floats, width: int) -> Floats:
-    """Mean over `width` (odd) rows around each; shorter at the ends."""
-    total = np.concatenate([[0.0], np.cumsum(values)])
+    """Mean over `width` (odd) rows around each, of those that are numbers; shorter at the ends. NaN where none is."""
+    is_number = np.isfinite(values)
+    total = np.concatenate([[0.0], np.cumsum(np.where(is_number, values, 0.0))])
+    count = np.concatenate([[0], np.cumsum(is_number)])
     middle = np.arange(len(values))
     low, high = np.maximum(middle - width // 2, 0), np.minimum(middle + width // 2 + 1, len(values))
-    mean: Floats = (total[high] - total[low]) / (high - low)
+    known = count[high] - count[low]
+    mean: Floats = np.where(known > 0, (total[high] - total[low]) / np.maximum(known, 1), np.nan)
     return mean
 
 

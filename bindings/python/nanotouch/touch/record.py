@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nanotouch import guard
 from nanotouch._io import html, worker
-from nanotouch._io.files import checked_path
+from nanotouch._io.files import checked_path, refuse_pipe
 from nanotouch._io.writing import BLOCK_ROWS
 from nanotouch._io.writing import replacing as replacing
 from nanotouch._io.writing import write_csv as write_csv
@@ -227,6 +227,7 @@ def read(path: str | os.PathLike[str], *, untrusted: bool | None = None) -> Reco
         True: read it in a confined process (Linux only). By default the ``nanotouch`` command does so, Python does not.
     """
     file = Path(path)
+    refuse_pipe(file)
     if guard.wanted(untrusted):
         parts = worker.ask("record.read", file, {}, dict)
         if not all(isinstance(parts.get(key), dict) for key in ("columns", "metadata")):
