@@ -17,7 +17,7 @@ NUMBER = r"([-+.\deEinfa]+)"
 INACCURATE = re.compile(rf"demand\.relative_accuracy = {NUMBER}\s*: valid is {NUMBER} \.\. ")
 UNSTABLE = re.compile(rf"stability margin \(([^)]*)\) = {NUMBER}: valid is {NUMBER} \.\. ")
 NO_LAW = re.compile(r"the sample deforms under (.*) before contact\)")
-OTHER = re.compile(r"([a-z]+\.[a-z_]+) = (\S+(?: \S+)?): valid is (.*)$")
+OTHER = re.compile(r"([a-z]+\.[a-z_]+)(?: \(([^)]*)\))? = (\S+(?: \S+)?): valid is ([^;]*)")
 HALVINGS = 20  # of the way to what was asked
 SURE = 0.999  # of what was found is told, so that asking for it works
 
@@ -40,9 +40,9 @@ def in_words(session: nt.Session, what: str, field: str, value: float, error: Er
         return (f"{asked}: the loop would not be stable enough (margin {float(found[2]):.3g} of {found[1]}; at least "
                 f"{float(found[3]):.3g} is kept).{possible} {stays}")  # fmt: skip
     if (found := OTHER.search(said)) and found[1] != field:
-        return (
-            f"{asked}: that does not go with {found[1]} = {found[2]}, which would have to be within {found[3]}. {stays}"
-        )
+        why = f" ({found[2]})" if found[2] else ""
+        return (f"{asked}: that does not go with {found[1]} = {found[3]}, which would have to be within {found[4]}{why}. "
+                f"{stays}")  # fmt: skip
     return f"{asked}: {said.removeprefix(f'{field}: ').removeprefix('rescale: ')}. {stays}"
 
 
