@@ -41,8 +41,8 @@ def in_words(session: nt.Session, what: str, field: str, value: float, error: Er
                 f"{float(found[3]):.3g} is kept).{possible} {stays}")  # fmt: skip
     if (found := OTHER.search(said)) and found[1] != field:
         why = f" ({found[2]})" if found[2] else ""
-        return (f"{asked}: that does not go with {found[1]} = {found[3]}, which would have to be within {found[4]}{why}. "
-                f"{stays}")  # fmt: skip
+        within = f"which would have to be within {found[4]}{why}"
+        return f"{asked}: that does not go with {found[1]} = {found[3]}, {within}. {stays}"
     return f"{asked}: {said.removeprefix(f'{field}: ').removeprefix('rescale: ')}. {stays}"
 
 
