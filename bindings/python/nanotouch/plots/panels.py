@@ -40,8 +40,11 @@ def dress(panel: Any, title: str) -> None:
 
 
 def signal(panel: Any, data: tuple[Floats, Floats], colour: str, style: Any, label: str) -> None:
-    """All samples, pale, and over them their mean over a five-hundredth of the record, in which dashes can be seen."""
+    """All samples, pale, and over them their mean over a five-hundredth of the record, in which dashes can be seen.
+    Nothing, in the legend either, of what was not measured at all."""
     axis, values = data
+    if not np.isfinite(values).any():
+        return
     rows = envelope(values)
     if len(values) < 2000:
         panel.plot(axis, values, color=colour, ls=style, lw=1.5, label=label)
