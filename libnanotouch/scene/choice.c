@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The cheapest nt_plan_choice of forms whose errors add up to no more than the demand: all of them are tried, a few
+ * The cheapest combination of forms whose errors add up to no more than the demand: all of them are tried, a few
  * hundred at most. No plan can then cost more than everything-on; where two cost the same, the truer one is taken. */
 #include "scene/terms/term.h"
 
@@ -22,7 +22,7 @@ static void weigh(const nt_plan_options *options, nt_plan_choice *tried)
     }
 }
 
-/* The next nt_plan_choice; 0 after the last. */
+/* The next combination; 0 after the last. */
 static int next(const nt_plan_options *options, nt_plan_choice *tried)
 {
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {

@@ -68,7 +68,7 @@ def each(
     work: Callable[[int], Result], items: range, kept: Callable[[int, Result], bool | None],
     waits: Callable[[int], bool | None], threads: int | None,
 ) -> int:  # fmt: skip
-    """Work on the cores; results are told in their order, with their number. False, or what that raises, ends the
+    """Work on the cores; results are reported in order, with their number. False, or what that raises, ends the
     rest. How many were told.
 
     While one is awaited ``waits`` is asked, with how many were told, and may end it likewise. What the compiled code

@@ -157,7 +157,7 @@ def _line(found: list[Section], count: int) -> int:
 
 
 def _check_count(found: list[Section], count: int) -> tuple[str, ...]:
-    """Of the curves of a map, against the picture that has one point for each: more are refused, fewer are told."""
+    """Of the curves of a map, against the picture that has one point for each: more are refused, fewer are noted."""
     line = header.section(found, "Ciao force list").counts("force/line")[0]
     listed = [one for one in found if one.name == "Ciao image list" and {"samps/line", "number of lines"} <= set(one)]
     shapes = [(one.counts("Samps/line")[0], one.counts("Number of lines")[0]) for one in listed]
