@@ -73,10 +73,14 @@ What laws, plans, the loop and fits give at the edges of what they may be asked.
 - **zeros, infinities**: each argument, one at a time: 0, -0, 5e-324 (1e-300 of scenes and rigs); infinite, NaN.
 - **30 decades**: each argument, one at a time, 15 decades to either side of its usual value.
 
-Right: U, F and k of a law within 1e-9 of mpmath at 150 digits or of the limit (1600 digits); a plan within its bound
-of the oracle in `tests/python/oracle.py`; all that a session records is finite and the force on its tip that of its
-plan; a fitted modulus within {100 * extremes_scenes.FIT_ERROR:g} % of that which the curve was made with. NaN in, NaN
-out is right.
+What counts as right:
+
+- a law: U, F and k within 1e-9 of mpmath at 150 digits, or of the limit at 1600;
+- a plan: within its bound of the oracle in `tests/python/oracle.py`;
+- a loop: all that a session records is finite, and the force on its tip is that of its plan;
+- a fit: the modulus within 2 % of that which the curve was made with.
+
+NaN in, NaN out is right, too.
 
 ```
 {command}
