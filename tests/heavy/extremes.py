@@ -78,7 +78,7 @@ What counts as right:
 - a law: U, F and k within 1e-9 of mpmath at 150 digits, or of the limit at 1600;
 - a plan: within its bound of the oracle in `tests/python/oracle.py`;
 - a loop: all that a session records is finite, and the force on its tip is that of its plan;
-- a fit: the modulus within 2 % of that which the curve was made with.
+- a fit: the modulus within {100 * extremes_scenes.FIT_ERROR:g} % of that which the curve was made with.
 
 NaN in, NaN out is right, too.
 
