@@ -79,7 +79,7 @@ static void check_layer(nt_plan *plan, const nt_scene *scene)
     const double more = alpha + alpha * alpha, demanded = plan->accuracy;
     if (scene->sample.thickness > 0.0 && !nt_plan_solves_layer(plan) && more > demanded)
         nt_plan_add_warning(
-            plan, (nt_plan_warning){"layer taken for a half-space in contact, whose force is smaller by about", "",
+            plan, (nt_plan_warning){"layer taken for a half-space in contact; the force of the layer is larger by about", "",
                                     more, demanded});
 }
 
