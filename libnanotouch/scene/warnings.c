@@ -79,8 +79,9 @@ static void check_layer(nt_plan *plan, const nt_scene *scene)
     const double more = alpha + alpha * alpha, demanded = plan->accuracy;
     if (scene->sample.thickness > 0.0 && !nt_plan_solves_layer(plan) && more > demanded)
         nt_plan_add_warning(
-            plan, (nt_plan_warning){"layer taken for a half-space in contact; the force of the layer is larger by about", "",
-                                    more, demanded});
+            plan,
+            (nt_plan_warning){"layer taken for a half-space in contact; the force of the layer is larger by about", "",
+                              more, demanded});
 }
 
 /* A sample that deforms has a paraboloid before it. With adhesion, or where something pulls, the terms beside contact
