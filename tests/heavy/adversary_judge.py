@@ -69,6 +69,7 @@ class Judge:
         self.before = np.zeros(3)  # of the motor [N]
         self.given = 0.0  # to the hand since [J]
         self.hasty = False  # the hand has been faster since than is declared
+        self.began, self.start = 0.0, np.zeros(3)  # the last tick before a stop, and where the hand was [s, m]
         self.last: Any = None
 
     @property
@@ -165,6 +166,7 @@ class Judge:
             return
         if self.stopped < 0.0:
             self.stopped, self.given, self.before, self.hasty = float(time[0]), 0.0, self.last[1], False
+            self.began, self.start = self.last[0], self.last[2]
         rest = 1e-6 * self.motor
         size = np.linalg.norm(force, axis=1)
         self._met("motor after a stop", size, float(np.linalg.norm(self.before)) + rest, time)
@@ -175,6 +177,8 @@ class Judge:
         given = self.given + np.cumsum(np.nan_to_num((held * way).sum(axis=1)))
         speed = np.diff(np.append(self.last[0], time)) * hand.speed + self.step
         self.hasty |= bool((np.linalg.norm(np.nan_to_num(way), axis=1) > speed).any())
+        whole = np.linalg.norm(np.nan_to_num(place - self.start), axis=1)  # a step of the read-out hides a tick's speed
+        self.hasty |= bool((whole > (time - self.began) * hand.speed + self.step).any())
         if not self.hasty:  # no hand is declared that goes as fast
             self._met("energy to the hand", np.maximum(given, 0.0), hand.energy + 1e-9, time)
         self.given = float(given[-1])
