@@ -69,7 +69,7 @@ def fitted(
     this `place` for its results goes on."""
     try:
         with output.progress_bar(title) as progress:
-            return awaited(lambda: fit(progress))
+            return fit(progress)  # in this thread: a fit takes milliseconds, and the guard forks at once
     except stop.Stopped as stopped:
         journal = out.with_name(f"{out.name}.journal")
         files = finished(journal)

@@ -224,6 +224,7 @@ def progress_bar(title: str) -> Iterator[Callable[[float], None]]:
         with busy(title):
             yield lambda _: None
         return
+    tqdm.monitor_interval = 0  # no thread of its own: the guard forks only a process that has none
     layout = "{l_bar}{bar}| {elapsed}<{remaining}"
     options = {"desc": title, "delay": 1.0, "bar_format": layout, "leave": False, "file": sys.stderr}
     with tqdm(total=1.0, disable=not sys.stderr.isatty(), **options) as bar:

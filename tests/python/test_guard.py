@@ -166,6 +166,20 @@ def test_a_batch_is_read_by_one_child_with_the_answers_of_single_files(tmp_path:
         np.testing.assert_array_equal(one.heights, other.heights)
 
 
+def test_fit_of_a_folder_forks_its_guard_and_starts_no_other_python(tmp_path: Path) -> None:
+    """Another Python took 0.1 s of the processor; threads of a bar or of the command would need one."""
+    from test_curves_jpk import single
+
+    for number in range(3):
+        single(tmp_path / f"{number}.jpk-force")
+    line = ["fit", str(tmp_path), "--out", str(tmp_path / "r.csv"), "--radius", "20nm", "--model", "hertz"]
+    code = "from nanotouch._io import worker\nworker._started = None\n"
+    code += f"from nanotouch_app.main import main\nmain({line!r})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert "3 curves" in done.stdout, done
+    assert "NoneType" not in done.stdout, done
+
+
 def test_a_link_leads_to_its_file_alone(tmp_path: Path) -> None:
     heights = synthetic.asymmetric()
     real = synthetic.write_matrix(tmp_path / "real.txt", heights, (3e-6, 4e-6))
