@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 
 from .._io.files import guarded
 from ..errors import ReadError, require
-from . import gwyddion, headers, text_table
+from . import dataset, gwyddion, headers, text_table
 from .channel import OTHER_NAMES, Channel, Plane, chosen, with_default
 from .checks import LENGTHS, PIXELS_PER_SIDE, check_shape
 
 NAME = "SurfaceTopography"
+_BARE = ("npy", "npz", "h5")
 #: Readers that recognise nothing in a file and take any bytes of a fitting number for an image (elevation maps, NMS).
 _CREDULOUS = ("hgt", "nms")
 
@@ -39,14 +40,14 @@ def channels(file: Path) -> list[Channel]:
     """The two-dimensional channels of a file."""
     with _opened(file) as reader:
         found, left_out = _images_in(reader, file)
-        return _listed(found, left_out)
+        return _listed(found, left_out, file, str(reader.format()))
 
 
 def read(file: Path, channel: str | None) -> Plane:
     """One channel, the height channel if none is named."""
     with _opened(file) as reader:
         found, left_out = _images_in(reader, file)
-        listed = _listed(found, left_out)
+        listed = _listed(found, left_out, file, str(reader.format()))
         number = chosen(listed, channel, file)
         broken = gwyddion.broken(file) if reader.format() == "gwy" else ()
         if number >= len(found):
@@ -63,6 +64,9 @@ def read(file: Path, channel: str | None) -> Plane:
         if kind != "height":
             vertical = _units(info.data_unit)[1]
         name, source = str(info.channel_id), f"{NAME}/{reader.format()}"
+        if reader.format() == "h5":
+            facts = dataset.facts_of(file, str(info.name))
+            return Plane(name, facts.of(values), facts.unit, facts.pixel_size, source)
         no_size = "states no scan size"
         if not unsized and lateral not in LENGTHS:
             no_size = "states no lateral unit" if lateral is None else f"states the lateral unit {lateral!r}"
@@ -111,11 +115,19 @@ def _kind(info: Any) -> str:
     return other or kind if kind == "height" else kind
 
 
-def _listed(found: list[Any], left_out: list[Channel]) -> list[Channel]:
-    return with_default([*(_described(info, _kind(info)) for info in found), *left_out])
+def _listed(found: list[Any], left_out: list[Channel], file: Path, format_: str) -> list[Channel]:
+    describe = _array if format_ in _BARE else _described
+    return with_default([*(describe(info, _kind(info), file) for info in found), *left_out])
 
 
-def _described(info: Any, kind: str) -> Channel:
+def _array(info: Any, kind: str, file: Path) -> Channel:
+    """A bare array, ``[row, column]``, with what HDF5 may say of it."""
+    facts, shape = dataset.facts_of(file, str(info.name)), tuple(info.nb_grid_pts)
+    size = None if facts.pixel_size is None else (shape[0] * facts.pixel_size[0], shape[1] * facts.pixel_size[1])
+    return Channel(str(info.channel_id), shape, size, facts.unit, kind, False)
+
+
+def _described(info: Any, kind: str, _: Path) -> Channel:
     lateral, vertical = _units(info.unit)
     if kind != "height":
         vertical = _units(info.data_unit)[1]
@@ -138,7 +150,7 @@ def _upright(values: NDArray[np.float64], format_: str) -> NDArray[np.float64]:
     Bare arrays (numpy, HDF5) have no stated axes: they are taken as pictures, ``[row, column]`` from the top, where
     SurfaceTopography takes ``[x, y]``. Point lists (xyz) carry their own y, which rises upwards already.
     """
-    if format_ in ("npy", "npz", "h5"):
+    if format_ in _BARE:
         return np.array(values[::-1], order="C")
     if format_ == "xyz":
         return np.array(values.T, order="C")
