@@ -7,7 +7,7 @@ const NUMBER = "([-+.\\deEinfa]+)";
 const INACCURATE = new RegExp(`demand\\.relative_accuracy = ${NUMBER}\\s*: valid is ${NUMBER} \\.\\. `);
 const UNSTABLE = new RegExp(`margin.*= ${NUMBER}: valid is ${NUMBER} \\.\\. `);
 const NO_LAW = /the sample deforms under (.*) before contact\)/;
-const OTHER = /([a-z]+\.[a-z_]+) = (\S+(?: \S+)?): valid is (.*)$/;
+const OTHER = /([a-z]+\.[a-z_]+)(?: \(([^)]*)\))? = (\S+(?: \S+)?): valid is ([^;]*)/;
 const HALVINGS = 20, SURE = 0.999; // of the way to what was asked; of what was found is told, so that asking for it works
 const percent = (share) => Number((100 * Number(share)).toPrecision(2));
 
@@ -28,7 +28,8 @@ export function inWords(host, { field, old, value }, said) {
   }
   found = OTHER.exec(said);
   if (found && found[1] !== field)
-    return `${asked}: that does not go with ${found[1]} = ${found[2]}, which would have to be within ${found[3]}. ${stays}`;
+    return `${asked}: that does not go with ${found[1]} = ${found[3]}, which would have to be within ${found[4]}` +
+      `${found[2] ? ` (${found[2]})` : ""}. ${stays}`;
   return `${asked}: ${said.replace(`${field}: `, "")}. ${stays}`;
 }
 
