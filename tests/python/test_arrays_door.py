@@ -143,3 +143,15 @@ def test_maps_images_and_paths_refuse_masks_and_units(name: str) -> None:
     if name not in ("volume", "z of a volume"):  # what only carries numbers there has no shape
         with pytest.raises((TypeError, nt.Error), match="carries a unit"):
             take(Quantity(values))
+
+
+@pytest.mark.parametrize(("key", "value"), [("units", "mN"), ("scale_factor", 0.1)])
+def test_what_an_hdf5_dataset_states_is_not_lost(key: str, value: object, tmp_path: Path) -> None:
+    """Its unit was: E* came out 1e3 times too large, marked ok."""
+    h5py = pytest.importorskip("h5py")
+    pytest.importorskip("xarray")
+    with h5py.File(tmp_path / "v.h5", "w") as file:
+        file["force"] = np.zeros((2, 2, 40))
+        file["force"].attrs[key] = value
+        with pytest.raises(TypeError, match=f"states {key} = {value}"):
+            nt.maps.fit(file["force"], "hertz", radius=1e-6, z=np.zeros(40), spring_constant=1.0)

@@ -21,6 +21,10 @@ def refuse_dressed(values: Any, name: str) -> None:
         raise TypeError(f"{name} is a numpy.matrix; pass numpy.asarray of it")
     if hasattr(values, "units") or hasattr(values, "unit"):
         raise TypeError(f"{name} carries a unit; convert it to SI and pass plain numbers")
+    told = getattr(values, "attrs", None)  # of HDF5 datasets, xarray
+    for key in ("units", "unit", "scale_factor", "add_offset"):
+        if told is not None and key in told:
+            raise TypeError(f"{name} states {key} = {told[key]}; convert it to SI and pass plain numbers")
 
 
 def as_mask(values: ArrayLike, name: str) -> NDArray[np.bool_]:

@@ -80,8 +80,7 @@ class ArrayVolume:
 
     def __post_init__(self) -> None:
         for values, name in ((self.values, "the map"), (self.z, "z")):
-            if isinstance(values, np.ma.MaskedArray):  # others as they are sliced
-                refuse_dressed(values, name)
+            refuse_dressed(values, name)
         if len(self.values.shape) != 3:
             raise InvalidValue(f"the array of a map has shape (y, x, points), not {self.values.shape}")
         valid = (self.values.shape[2:], self.values.shape)
