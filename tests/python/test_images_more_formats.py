@@ -301,3 +301,26 @@ def test_a_field_of_another_size_than_its_header_says_is_refused(tmp_path: Path)
     path.write_bytes(path.read_bytes().replace(f"XRes = {NX}".encode(), f"XRes = {NX // 2}".encode()))
     with pytest.raises(ReadError, match="bytes long, but its header states"):
         images.read(path)
+
+
+@pytest.mark.parametrize("ending", ["gwy", "gsf"])
+def test_a_current_is_no_height_in_angstrom_and_is_written_as_it_was(ending: str, tmp_path: Path) -> None:
+    """Gwyddion writes ampere as A, which elsewhere is the angstrom: picoamperes came out as heights."""
+    objects = pytest.importorskip("gwyfile.objects")
+    frame = {"xreal": SIDE[1], "yreal": SIDE[0], "si_unit_xy": "m"}
+    container = objects.GwyContainer()
+    for number, (title, unit) in enumerate((("Topography", "A"), ("Height", "m"))):
+        data = np.ascontiguousarray(HEIGHTS[::-1], dtype=np.float64)
+        container[f"/{number}/data"] = objects.GwyDataField(data, si_unit_z=unit, **frame)
+        container[f"/{number}/data/title"] = title
+    container.tofile(str(tmp_path / "a.gwy"))
+    listed = {channel.name: (channel.unit, channel.default) for channel in images.channels(tmp_path / "a.gwy")}
+    assert listed == {"Height": ("m", True), "Topography": ("ampere", False)}
+    with pytest.raises(ReadError, match="'ampere', not a length"):
+        images.read(tmp_path / "a.gwy", "Topography")
+    planes, _ = images.planes(tmp_path / "a.gwy")
+    (current,) = (plane for plane in planes if plane.unit == "ampere")
+    images.write_planes(tmp_path / f"b.{ending}", [current])
+    (again,) = images.planes(tmp_path / f"b.{ending}")[0]
+    assert again.unit == "ampere"
+    np.testing.assert_allclose(again.values, current.values, rtol=1e-6)

@@ -88,6 +88,11 @@ def si_unit(unit: str) -> str:
     return "ampere" if unit == "A" else unit
 
 
+def written_unit(unit: str | None) -> str:
+    """As a format that keeps to SI has it: metres for every length."""
+    return "m" if unit in LENGTHS else "A" if unit == "ampere" else unit or ""
+
+
 def with_default(listed: Sequence[Channel]) -> list[Channel]:
     """The same with the channel marked that is read if none is named: of the heights, the first of the best name."""
 

@@ -16,7 +16,7 @@ from .._io.files import checked_path, guarded
 from .._io.writing import replacing
 from ..errors import InvalidValue, ReadError, require
 from . import gsf
-from .channel import Plane
+from .channel import Plane, written_unit
 from .checks import LENGTHS
 from .reading import reader_of
 
@@ -74,7 +74,7 @@ def write_planes(path: str | os.PathLike[str], fields: Sequence[Plane]) -> Path:
         if not known.any():
             raise InvalidValue(f"{file}: {field.name} has no finite value")
         factor = LENGTHS.get(field.unit or "", 1.0)
-        unit = "m" if field.unit in LENGTHS else field.unit or ""
+        unit = written_unit(field.unit)
         values = np.where(known, field.values, np.median(field.values[known])) * factor
         ny, nx = values.shape
         pixel = field.pixel_size or (1.0, 1.0)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ReadError
-from .channel import Channel, Plane, chosen, si_unit, with_default
+from .channel import Channel, Plane, chosen, si_unit, with_default, written_unit
 from .checks import LENGTHS, check_shape
 
 NAME = "nanotouch/gsf"
@@ -57,8 +57,8 @@ def write(file: Path, field: Plane, offset: tuple[float, float] | None = None) -
     facts = {"XRes": nx, "YRes": ny, "XReal": repr(float(dx * nx)), "YReal": repr(float(dy * ny))}
     if offset is not None:
         facts |= {"XOffset": repr(offset[1]), "YOffset": repr(-(offset[0] + dy * ny))}
-    unit = "m" if field.unit in LENGTHS else field.unit or ""
-    facts |= {"XYUnits": "m" if field.pixel_size else "", "ZUnits": unit, "Title": " ".join(field.name.split())}
+    facts |= {"XYUnits": "m" if field.pixel_size else "", "ZUnits": written_unit(field.unit)}
+    facts["Title"] = " ".join(field.name.split())
     text = SIGNATURE.decode() + "".join(f"{key} = {value}\n" for key, value in facts.items() if value != "")
     header = text.encode("utf-8", "backslashreplace")
     values = field.values * LENGTHS.get(field.unit or "", 1.0)

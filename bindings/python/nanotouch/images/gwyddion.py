@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ReadError
-from .channel import Channel, Plane
+from .channel import Channel, Plane, si_unit
 from .checks import LENGTHS, check_shape
 
 MAGIC = b"GWYP"
@@ -47,6 +47,12 @@ def broken(file: Path) -> tuple[str, ...]:
             lacks = ", ".join(sorted(_NEEDED - set(value))) if isinstance(value, dict) else "everything"
             found.append(f"channel {match[1]} left out: broken, it lacks {lacks}")
     return tuple(found)
+
+
+def currents(file: Path) -> frozenset[int]:
+    """Numbers of the channels in ampere, whose A SurfaceTopography takes for the ångström."""
+    numbers = (number for number, field in _fields(_content(file), file).values() if _unit(field, "z") == "ampere")
+    return frozenset(numbers)
 
 
 def read(file: Path, channel: str) -> Plane:
@@ -85,7 +91,7 @@ def _fields(content: dict[str, Any], file: Path) -> dict[str, tuple[int, dict[st
 def _unit(field: dict[str, Any], axis: str) -> str:
     unit = field.get(f"si_unit_{axis}")
     text = unit.get("unitstr", "") if isinstance(unit, dict) else ""
-    return text if isinstance(text, str) else ""
+    return si_unit(text) if isinstance(text, str) else ""
 
 
 def _shape(field: dict[str, Any], file: Path) -> tuple[int, int]:

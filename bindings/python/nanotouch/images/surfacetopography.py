@@ -101,7 +101,10 @@ def _images_in(reader: Any, file: Path) -> tuple[list[Any], list[Channel]]:
     if reader.format() == "asc" and found and all(min(info.nb_grid_pts) < PIXELS_PER_SIDE[0] for info in found):
         columns, rows = found[0].nb_grid_pts
         raise ReadError(f"{file}: a table of {rows} rows and {columns} columns, not an image")
-    left_out = gwyddion.channels(file) if reader.format() == "gwy" else []
+    left_out = []
+    if reader.format() == "gwy":
+        left_out, currents = gwyddion.channels(file), gwyddion.currents(file)
+        found = [info for info in found if info.tags["index"] not in currents]
     if not found and not left_out:
         why = _NO_HEIGHTS_IN_TIFF if reader.format() == "jpk" else "holds no image (no two-dimensional channel)"
         raise ReadError(f"{file}: {why}")
