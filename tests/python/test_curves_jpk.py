@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import synthetic
-from nanotouch import curves
+from nanotouch import curves, maps
 from nanotouch.curves import jpk
 from nanotouch.errors import InvalidValue, ReadError
 
@@ -260,3 +260,14 @@ def test_archives_behind_something_else_and_endless_properties_are_refused(tmp_p
     path.write_bytes(b"not a zip archive, it seems" + huge)
     with pytest.raises(ReadError, match="unpacks to 3000 MiB"):
         curves.read(path)
+
+
+def test_a_grid_that_puts_two_curves_into_one_pixel_is_refused(tmp_path: Path) -> None:
+    """The second was lost without a word: 4 of 8 curves, marked ok."""
+    pytest.importorskip("xarray")
+    path, wrong = as_map(tmp_path / "map.jpk-force-map", 8), tmp_path / "wrong.jpk-force-map"
+    with zipfile.ZipFile(path) as archive, zipfile.ZipFile(wrong, "w") as other:
+        for name in archive.namelist():
+            other.writestr(name, archive.read(name).replace(b"grid.ilength=4", b"grid.ilength=2"))
+    with pytest.raises(InvalidValue, match="curves 0 and 1 both lie at row 0, column 0 of a grid of 2 x 2"):
+        maps.fit(wrong, "hertz", radius=1e-6)

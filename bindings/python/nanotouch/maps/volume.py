@@ -231,7 +231,9 @@ def _order(metas: Sequence[Mapping[str, Any]], shape: tuple[int, int], name: str
         y, x = int(meta["grid index y"]), int(meta["grid index x"])
         if not (0 <= y < ny and 0 <= x < nx):
             raise InvalidValue(f"{name}: a curve at row {y}, column {x} of a grid of {ny} x {nx}")
-        order[y * nx + x] = number
+        if (other := order.setdefault(y * nx + x, number)) != number:
+            raise InvalidValue(f"{name}: curves {other} and {number} both lie at row {y}, column {x} of a grid of "
+                               f"{ny} x {nx}: grid and positions do not belong together")  # fmt: skip
     return order
 
 
