@@ -175,6 +175,16 @@ def test_a_nanonis_spectrum_over_z(tmp_path: Path, signal: str) -> None:
             curves.read(path)
 
 
+def test_a_nanonis_row_that_is_cut_off_is_told(tmp_path: Path) -> None:
+    z = np.linspace(1e-6, 0.0, 60)
+    path = write_dat(tmp_path / "a.dat", {"Z rel (m)": z, "Current (A)": z, "Force (N)": 1e-3 * z})
+    whole = path.read_text()
+    path.write_text(whole[: whole.rindex("\t")])
+    (curve,) = curves.read(path, spring_constant=K)
+    assert len(curve.segments[0]) == 59
+    assert "the last row is cut off and left out" in curve.meta["notes"]
+
+
 def test_other_nanonis_spectra_are_refused_with_what_they_hold(tmp_path: Path) -> None:
     bias = np.linspace(-1.0, 1.0, 50)
     path = write_dat(tmp_path / "a.dat", {"Bias calc (V)": bias, "Current (A)": bias}, "bias spectroscopy")

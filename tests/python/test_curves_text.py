@@ -172,6 +172,18 @@ def test_rows_of_nova_without_numbers_are_left_out_and_told(tmp_path: Path, plac
     assert "1 row of the approach without a number left out" in curve.meta["notes"]
 
 
+def test_rows_of_nova_that_repeat_the_first_reading_are_told(tmp_path: Path) -> None:
+    """Padding, or a saturated detector: nobody can tell, and 22 points of contact were gone without a word."""
+    path = nova(tmp_path / "a.txt", comma=False)
+    lines = [line.split("\t") for line in path.read_text().splitlines()]
+    for line in lines[:22]:
+        line[1] = lines[21][1]
+    path.write_text("\n".join(map("\t".join, lines)) + "\n")
+    (curve,) = curves.read(path, spring_constant=0.05, sensitivity=50.0)
+    assert len(curve.approach) == 400 - 21  # type: ignore[arg-type]
+    assert any(note.startswith("21 rows of the approach that repeat its first reading") for note in curve.meta["notes"])
+
+
 @pytest.mark.parametrize(("comma", "gap", "mark", "turned"), [
     (True, "\t", False, False), (False, "\t", False, False), (True, ";", True, False), (False, ",", False, True),
     (False, "  ", True, True),

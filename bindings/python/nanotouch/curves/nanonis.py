@@ -40,7 +40,7 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     if not mark:
         raise ReadError(f"{file}: lacks {_DATA}")
     facts = dict(line.split("\t")[:2] for line in header.splitlines() if "\t" in line)
-    names, every = _table(file, body)
+    names, every, cut = _table(file, body)
     values, unmeasured = _measured(every)
     z_name = next((name for name in _Z if name in names and float(np.ptp(values[names.index(name)])) > 0.0), None)
     signal = _signal(names)
@@ -53,7 +53,7 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     meta: dict[str, Any] = {"format": "Nanonis", "instrument": "Nanonis", "path": file, "enum": 0}
     meta |= {"date": facts.get("Saved Date", "")}
     factor, notes = _factor(file, unit, calibration, meta)
-    notes += unmeasured
+    notes += (*unmeasured, *cut)
     if notes:
         meta["notes"] = notes
     z, forward = values[names.index(z_name)], values[there]
@@ -63,15 +63,17 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     return [ForceCurve(tuple(segments), meta, printable(file.name))]
 
 
-def _table(file: Path, body: str) -> tuple[list[str], Floats]:
+def _table(file: Path, body: str) -> tuple[list[str], Floats, tuple[str, ...]]:
+    """Names, columns, and a note of a last row that is cut off."""
     lines = body.strip("\r\n").splitlines()
     names = [name.strip() for name in lines[0].split("\t")] if lines else []
     rows = [line.split("\t") for line in lines[1:] if line.strip()]
-    if rows and len(rows[-1]) < len(names):
-        rows.pop()  # cut off
+    cut = bool(rows) and len(rows[-1]) < len(names)
+    rows = rows[:-1] if cut else rows
     if not MIN_POINTS <= len(rows) <= MAX_POINTS or any(len(row) != len(names) for row in rows):
         raise ReadError(f"{file}: {len(rows)} rows, or rows of another length than its {len(names)} columns")
-    return names, np.array(rows, np.float64).T
+    told = ("the last row is cut off and left out",) if cut else ()
+    return names, np.array(rows, np.float64).T, told
 
 
 def _measured(values: Floats) -> tuple[Floats, tuple[str, ...]]:

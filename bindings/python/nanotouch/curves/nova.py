@@ -74,7 +74,11 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
             raise ReadError(f"{file}: its {role} has no numbers")
         if len(known) < len(rows):
             notes.append(f"{counted(len(rows) - len(known), 'row')} of the {role} without a number left out")
-        branch = _without_padding(known)[:: -1 if role == "approach" else 1]
+        whole = _without_padding(known)
+        if copies := len(known) - len(whole):
+            notes.append(f"{counted(copies, 'row')} of the {role} that repeat its first reading left out: "
+                         "Nova's padding, or a detector at the end of its range")  # fmt: skip
+        branch = whole[:: -1 if role == "approach" else 1]
         bent = branch[:, 1] * calibration.sensitivity
         time = np.full(len(branch), np.nan)
         force = bent * calibration.spring_constant

@@ -226,7 +226,7 @@ class CurveVolume:
 
 def _order(metas: Sequence[Mapping[str, Any]], shape: tuple[int, int], name: str) -> dict[int, int]:
     """Which curve is at each place, counted along the rows."""
-    (ny, nx), order = shape, {}
+    (ny, nx), order = shape, dict[int, int]()
     for number, meta in enumerate(metas):
         y, x = int(meta["grid index y"]), int(meta["grid index x"])
         if not (0 <= y < ny and 0 <= x < nx):
