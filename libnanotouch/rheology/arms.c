@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "rheology/kernel.h"
+
 enum { TERMS = 15 }; /* of the series at x = 1, to the last bit */
 
 void nt_arms_make(nt_arms *arms, const nt_rheology *rheology, const nt_spectrum *spectrum, int with_derivatives)

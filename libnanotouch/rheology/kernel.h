@@ -6,8 +6,18 @@
 
 #include "nanotouch/rheology.h"
 
+/* How a spectrum changes with a parameter p of its description. */
+typedef struct nt_spectrum_slope {
+    double equilibrium_modulus;      /* [Pa/unit of p] */
+    double moduli[NT_SPECTRUM_ARMS]; /* [Pa/unit of p] */
+    int arm;                         /* the one whose rate changes; -1: none */
+    double rate;                     /* by how much [1/s/unit of p] */
+} nt_spectrum_slope;
+/* Derivative of a spectrum of this description by one of its parameters, its range of times fixed. */
+void nt_spectrum_derive(const nt_rheology *rheology, const nt_spectrum *spectrum, int parameter,
+                        nt_spectrum_slope *slope);
+
 typedef struct nt_kernel {
-    const char *name;
     nt_status (*check)(const nt_rheology *rheology, nt_problem *problem); /* of what the table of fields cannot say */
     double (*relaxation)(const nt_rheology *rheology, double time);
     double (*integral)(const nt_rheology *rheology, double time);

@@ -186,5 +186,4 @@ static void derive(const nt_rheology *rheology, const nt_spectrum *spectrum, int
     }
 }
 
-const nt_kernel nt_kernel_power_law = {"power_law", check,      relaxation,      integral,
-                                       creep,       discretize, parameter_count, derive};
+const nt_kernel nt_kernel_power_law = {check, relaxation, integral, creep, discretize, parameter_count, derive};

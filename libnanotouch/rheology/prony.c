@@ -175,5 +175,4 @@ static int parameter_count(const nt_rheology *rheology)
     return 1 + 2 * rheology->arm_count;
 }
 
-const nt_kernel nt_kernel_prony = {"prony", check,      relaxation,      integral,
-                                   creep,   discretize, parameter_count, nt_prony_derive};
+const nt_kernel nt_kernel_prony = {check, relaxation, integral, creep, discretize, parameter_count, nt_prony_derive};

@@ -43,11 +43,6 @@ const nt_field *nt_rheology_fields(int *count)
     return fields;
 }
 
-const char *nt_rheology_name(nt_rheology_kind kind)
-{
-    return (unsigned)kind < NT_RHEOLOGY_COUNT ? kernels[kind]->name : NULL;
-}
-
 nt_status nt_rheology_check(const nt_rheology *rheology, nt_problem *problem)
 {
     const nt_status status = nt_field_check(fields, (int)(sizeof fields / sizeof fields[0]), rheology, problem);

@@ -37,5 +37,5 @@ static int parameter_count(const nt_rheology *rheology)
     return 1 + 2 * ONE;
 }
 
-const nt_kernel nt_kernel_standard_linear_solid = {
-    "standard_linear_solid", check, relaxation, integral, creep, discretize, parameter_count, nt_prony_derive};
+const nt_kernel nt_kernel_standard_linear_solid = {check,      relaxation,      integral,       creep,
+                                                   discretize, parameter_count, nt_prony_derive};

@@ -2,6 +2,7 @@
  * A power law as a sum of exponentials: its error, its derivatives, and what it refuses. */
 #include "assertions.h"
 #include "nanotouch/rheology.h"
+#include "rheology/kernel.h"
 
 static double sum_at(const nt_spectrum *of, double time)
 {

@@ -33,8 +33,6 @@ typedef struct nt_rheology {
 NT_API nt_rheology nt_rheology_defaults(void);
 /* The table of its fields but the arms, with units and ranges; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_rheology_fields(int *count);
-/* "power_law", "standard_linear_solid", "prony"; NULL for another. */
-NT_API const char *nt_rheology_name(nt_rheology_kind kind);
 /* NT_OK, or NT_E_ARGUMENT / NT_E_NOT_FINITE / NT_E_RANGE with the first offending field in *problem (NULL allowed). */
 NT_API nt_status nt_rheology_check(const nt_rheology *rheology, nt_problem *problem);
 
@@ -69,17 +67,6 @@ enum { NT_RHEOLOGY_PARAMETERS = 1 + 2 * NT_RHEOLOGY_ARMS };
 /* How many parameters a fit varies, in this order: power_law: modulus, exponent; the others: equilibrium_modulus, then
  * for each arm its modulus and its relaxation time. */
 NT_API int nt_rheology_parameter_count(const nt_rheology *rheology);
-/* How a spectrum changes with a parameter p of its description. */
-typedef struct nt_spectrum_slope {
-    double equilibrium_modulus;      /* [Pa/unit of p] */
-    double moduli[NT_SPECTRUM_ARMS]; /* [Pa/unit of p] */
-    int arm;                         /* the one whose rate changes; -1: none */
-    double rate;                     /* by how much [1/s/unit of p] */
-} nt_spectrum_slope;
-/* Derivative of a spectrum of this description by one of its parameters, its range of times fixed. */
-NT_API void nt_spectrum_derive(const nt_rheology *rheology, const nt_spectrum *spectrum, int parameter,
-                               nt_spectrum_slope *slope);
-
 #ifdef __cplusplus
 }
 #endif
