@@ -69,11 +69,12 @@ FIRST = (
     ("nanotouch live", "touch a surface with your own hand, in a window"),
     ("nanotouch touch", "the same without a hand: a touch is simulated, recorded and drawn"),
     ("nanotouch plan silicon_in_air", "which forces matter for a sample, and how well they are known"),
-    ("nanotouch samples", "an image, a force curve, a map and a scene to try the other commands on"),
-    ("nanotouch doctor", "what is installed, and what to install for the rest"),
-    ("nanotouch --help", "all commands"),
+    ("nanotouch samples", "write an image, a force curve, a map and a scene to try the next two on"),
+    ("nanotouch image scan.gwy", "level an AFM image and measure its roughness"),
+    ("nanotouch fit curve.h5 --radius 20nm", "modulus and adhesion from a force curve"),
 )
-"""what to try first"""
+"""what to try first: the six commands that most people need, in an order in which they work"""
+ALL = ("nanotouch --help", "all commands")
 
 
 def table(lines: tuple[tuple[str, str], ...]) -> str:

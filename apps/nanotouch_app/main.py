@@ -21,16 +21,22 @@ import nanotouch as nt
 from nanotouch import guard
 from nanotouch.errors import InvalidValue
 
-from nanotouch_app import examples, stop
-from nanotouch_app.guard import REFUSED, guarded, one_line
-from nanotouch_app.output import as_json
+from nanotouch_app import examples
+from nanotouch_app.common import stop
+from nanotouch_app.common.guard import REFUSED, guarded, one_line
+from nanotouch_app.common.output import as_json
 
-COMMANDS = (
-    "touch", "live", "scan", "push", "indent", "samples", "margins", "info", "plan", "curve", "image", "fit", "map",
-    "report", "review", "recalibrate", "export", "recover", "workflow", "reproduce", "tradeoff", "bench", "latency",
-    "rig", "doctor",
-)  # fmt: skip
-STUDIES = ("workflow", "reproduce", "tradeoff")
+GROUPS = {
+    "touch": ("touching", ("live", "touch", "scan", "push", "indent", "margins")),
+    "measured data": (
+        "data",
+        ("info", "image", "fit", "map", "report", "review", "recalibrate", "export", "recover", "samples"),
+    ),
+    "rig": ("rigs", ("rig", "latency", "doctor")),
+    "studies": ("studies", ("plan", "curve", "tradeoff", "bench", "reproduce", "workflow")),
+}
+"""what ``--help`` shows: title, and the package that holds the commands"""
+COMMANDS = tuple(command for _, commands in GROUPS.values() for command in commands)
 EPILOG = """exit status:
   0    done
   1    done, and the answer is no (margins: refused; rig probe: too slow; fit: no curve), or nobody read it
@@ -74,6 +80,21 @@ class Parser(argparse.ArgumentParser):
         self.exit(REFUSED, one_line(f"{self.prog}: error: {message} ({self.prog} --help tells more)") + "\n")
 
 
+class GroupedParser(Parser):
+    """Shows the commands by group, the ones that most people need first."""
+
+    def format_help(self) -> str:
+        """The help, with the commands where argparse would put one long list."""
+        subparsers = next(action for action in self._actions if isinstance(action, argparse._SubParsersAction))
+        helps = {action.dest: action.help for action in subparsers._get_subactions()}
+        parts = [self.description or "", self.format_usage().strip()]
+        parts.append(f"start with:\n{examples.table(examples.FIRST)}")
+        for title, (_, commands) in GROUPS.items():
+            rows = (f"  {name:13}{helps[name]}" for name in commands if name in helps)
+            parts.append("\n".join((f"{title}:", *rows)))
+        return "\n\n".join((*parts, f"nanotouch COMMAND --help shows options and examples.\n\n{EPILOG}\n"))
+
+
 def meant(word: str, known: Sequence[str]) -> str:
     """The question whether something known was meant; nothing where none is like it."""
     bare = {name.lstrip("-"): name for name in known}
@@ -83,14 +104,12 @@ def meant(word: str, known: Sequence[str]) -> str:
 
 def build_parser(commands: Sequence[str] = COMMANDS) -> Parser:
     """The parser with these sub-commands; each of them has to be loaded."""
-    parser = Parser(
+    parser = GroupedParser(
         prog="nanotouch",
         description="Touch nanoscale surfaces: feel, model and measure the forces at an AFM tip.",
-        epilog=f"examples:\n{examples.table(examples.FIRST)}\n\n{EPILOG}",
-        formatter_class=Formatter,
     )
     parser.add_argument("--version", action="version", version=f"nanotouch {nt.__version__}")
-    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for command in commands:
         _module(command).add_parser(subparsers)
         _complete(subparsers.choices[command], command)
@@ -99,8 +118,8 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> Parser:
 
 def _module(command: str) -> ModuleType:
     """Where a command is."""
-    room = "nanotouch_app.studies" if command in STUDIES else "nanotouch_app"
-    return importlib.import_module(f"{room}.{command}")
+    package = next(package for package, commands in GROUPS.values() if command in commands)
+    return importlib.import_module("nanotouch_app.live" if command == "live" else f"nanotouch_app.{package}.{command}")
 
 
 def _complete(parser: argparse.ArgumentParser, command: str) -> None:
@@ -131,7 +150,7 @@ def _run(arguments: list[str]) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # names of files may hold what the terminal's coding lacks
     if not arguments and "_ARGCOMPLETE" not in os.environ:
-        print(f"Touch nanoscale surfaces. Try:\n{examples.table(examples.FIRST)}")
+        print(f"Touch nanoscale surfaces. Try:\n{examples.table((*examples.FIRST, examples.ALL))}")
         return 0
     args = _parsed(arguments)
     for name, value in vars(args).items():

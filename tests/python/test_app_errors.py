@@ -12,7 +12,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.extras import ADDS, advice
-from nanotouch_app.main import COMMANDS, build_parser, main
+from nanotouch_app.main import COMMANDS, GROUPS, build_parser, main
 from synthetic import write_matrix
 
 HEIGHTS = 1e-9 * np.random.default_rng(1).random((16, 16))
@@ -192,6 +192,5 @@ def test_the_version_loads_no_command() -> None:
     version, loaded = done.stdout.splitlines()
     assert version == f"nanotouch {nt.__version__}"
     assert "nanotouch_app.main" in loaded.split()
-    assert not {f"nanotouch_app.{room}{command}" for command in COMMANDS for room in ("", "studies.")} & set(
-        loaded.split()
-    )
+    commands = {f"nanotouch_app.{package}.{name}" for package, names in GROUPS.values() for name in names}
+    assert not commands & set(loaded.split())

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from nanotouch.errors import Error
-from nanotouch_app import output
+from nanotouch_app.common import output
 from nanotouch_app.main import COMMANDS, build_parser, main
 
 pytest.importorskip("tqdm")

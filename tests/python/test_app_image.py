@@ -16,8 +16,8 @@ for module in ("SurfaceTopography", "cv2", "scipy", "matplotlib"):
     pytest.importorskip(module)
 
 from nanotouch import images, surface  # noqa: E402
-from nanotouch_app import touch  # noqa: E402
 from nanotouch_app.main import main  # noqa: E402
+from nanotouch_app.touching import touch  # noqa: E402
 
 IMAGES = sorted((synthetic.DATA / "images").glob("*.*"))
 SIDE = 10e-6

@@ -15,9 +15,12 @@ import numpy as np
 import pytest
 from nanotouch import record
 from nanotouch.scene.surface import grating
-from nanotouch_app import output, told, touch, view
+from nanotouch_app import view
+from nanotouch_app.common import output
 from nanotouch_app.main import main
-from nanotouch_app.summary import words
+from nanotouch_app.touching import report as told
+from nanotouch_app.touching import touch
+from nanotouch_app.touching.summary import words
 from synthetic import write_ibw_image, write_matrix
 
 pytest.importorskip("mcap")

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 from nanotouch import Scene, surface
 from nanotouch.errors import InvalidValue
-from nanotouch_app import guard, plan, surfaces
+from nanotouch_app.common import guard, surfaces
 from nanotouch_app.main import COMMANDS, main
+from nanotouch_app.studies import plan
 from wrong_inputs import CASES, make_files
 
 for module in ("cv2", "SurfaceTopography", "afmformats", "mcap", "xarray", "matplotlib"):

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from nanotouch_app import bench
 from nanotouch_app.main import main
+from nanotouch_app.studies import bench
 from nanotouch_app.studies.tradeoff import timing
 
 

@@ -17,7 +17,7 @@ import pytest
 import random_scenes
 from nanotouch import _core
 from nanotouch.errors import Error, InvalidValue
-from nanotouch_app import scenes
+from nanotouch_app.common import scenes
 from nanotouch_app.main import main
 
 ROOT = Path(__file__).parents[2]

@@ -17,8 +17,8 @@ from nanotouch.errors import DeviceError, InvalidValue
 from nanotouch.touch import calibrate
 from nanotouch.touch.calibrate import Driven, Value
 from nanotouch.touch.hal import Action, Capabilities, Reading
-from nanotouch_app import calibrate as command
 from nanotouch_app.main import main
+from nanotouch_app.rigs import calibrate as command
 
 pytest.importorskip("scipy")
 

@@ -13,7 +13,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import margins
-from nanotouch_app import margins as command
+from nanotouch_app.touching import margins as command
 
 HEAVY = Path(__file__).parents[1] / "heavy" / "calm.py"
 

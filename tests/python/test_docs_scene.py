@@ -15,7 +15,7 @@ from nanotouch.scene import Quantity
 from nanotouch.scene.interaction import STATE_SIZE
 from nanotouch.scene.plan import ROWS
 from nanotouch_app.main import main
-from nanotouch_app.plan import PRESETS
+from nanotouch_app.studies.plan import PRESETS
 
 ROOT = Path(__file__).resolve().parents[2]
 

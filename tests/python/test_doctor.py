@@ -14,7 +14,8 @@ import pytest
 from nanotouch import _core
 from nanotouch.errors import DeviceError
 from nanotouch.extras import EXTRAS
-from nanotouch_app import doctor, view
+from nanotouch_app import view
+from nanotouch_app.rigs import doctor
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
 

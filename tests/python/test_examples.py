@@ -17,7 +17,9 @@ from typing import Any
 import nanotouch as nt
 import pytest
 from nanotouch import presets
-from nanotouch_app import output, samples, view
+from nanotouch_app import view
+from nanotouch_app.common import output
+from nanotouch_app.data import samples
 from nanotouch_app.examples import EXAMPLES, FIRST
 from nanotouch_app.main import COMMANDS, build_parser, main
 

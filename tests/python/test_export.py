@@ -13,7 +13,7 @@ from nanotouch import curves, images, maps, record
 from nanotouch.curves import ForceCurve, Segment
 from nanotouch.errors import Error, InvalidValue, ReadError
 from nanotouch.touch.record import Recording
-from nanotouch_app import export
+from nanotouch_app.data import export
 from synthetic import DATA, asymmetric, write_gwy
 
 pytest.importorskip("mcap")

@@ -15,7 +15,7 @@ for module in ("SurfaceTopography", "cv2", "afmformats"):
     pytest.importorskip(module)
 
 from nanotouch.errors import ReadError  # noqa: E402
-from nanotouch_app import info  # noqa: E402
+from nanotouch_app.data import info  # noqa: E402
 from nanotouch_app.main import main  # noqa: E402
 
 

@@ -13,8 +13,8 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import _core, margins
-from nanotouch_app import stability
 from nanotouch_app.main import main
+from nanotouch_app.touching import stability
 
 linalg = pytest.importorskip("scipy.linalg")
 Floats = Any

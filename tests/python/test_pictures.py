@@ -66,7 +66,7 @@ def test_a_line_that_only_crosses_is_seen() -> None:
 def test_every_figure_is_a_watched_one() -> None:
     """Whoever saves a figure makes it by ``new_figure``: no other is looked at. A film's frames and what a notebook
     shows are not saved."""
-    own = {"_io/drawing.py", "workflow/film.py", "nanotouch_app/review_window.py"}
+    own = {"_io/drawing.py", "workflow/film.py", "data/review_window.py"}
     for folder in ("apps", "bindings/python/nanotouch"):
         for file in sorted((ROOT / folder).rglob("*.py")):
             if "/".join(file.parts[-2:]) not in own:

@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 from nanotouch import Demand, Plan, Scene, presets
+from nanotouch_app.common.output import as_json
 from nanotouch_app.main import main
-from nanotouch_app.output import as_json
-from nanotouch_app.plan import PAPER, PRESETS
+from nanotouch_app.studies.plan import PAPER, PRESETS
 
 FILE = """
 [tip]

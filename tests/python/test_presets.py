@@ -12,9 +12,9 @@ import pytest
 from nanotouch import Scene, Session, Surface, Topography, presets, surface
 from nanotouch.errors import InvalidValue
 from nanotouch.scene.interaction import Interaction
-from nanotouch_app import surfaces
+from nanotouch_app.common import surfaces
 from nanotouch_app.main import main
-from nanotouch_app.plan import PAPER, PRESETS
+from nanotouch_app.studies.plan import PAPER, PRESETS
 
 SCENE_PAGE = Path(__file__).resolve().parents[2] / "docs" / "scene.md"
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from nanotouch import record
-from nanotouch_app import stop
+from nanotouch_app.common import stop
 from nanotouch_app.main import main
 
 if sys.platform == "win32":

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from nanotouch import Contact, batch, curves, maps
 from nanotouch.errors import Error, InvalidValue, ReadError
+from nanotouch_app.data.review_window import Board, show
 from nanotouch_app.main import main
-from nanotouch_app.review_window import Board, show
 
 pytest.importorskip("h5py")
 pytest.importorskip("afmformats")

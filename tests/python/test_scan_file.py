@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from nanotouch import images
 from nanotouch.units import in_words
-from nanotouch_app import output
+from nanotouch_app.common import output
 from nanotouch_app.main import main
 
 Captured = pytest.CaptureFixture[str]

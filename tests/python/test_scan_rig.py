@@ -16,7 +16,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.errors import InvalidValue
-from nanotouch_app import output, scenes
+from nanotouch_app.common import output, scenes
 from nanotouch_app.main import main
 from test_scan_lateral import Bench
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from nanotouch import rig_file
 from nanotouch.errors import DeviceError, Error, InvalidValue
-from nanotouch_app import scenes
+from nanotouch_app.common import scenes
 from nanotouch_app.main import main
 
 FILE = Path(__file__).parents[2] / "docs/examples/rig/tapping.toml"

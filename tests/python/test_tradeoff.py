@@ -16,7 +16,7 @@ import pytest
 from nanotouch import Rig, reference
 from nanotouch.plots import new_figure
 from nanotouch_app.main import main
-from nanotouch_app.plan import PRESETS
+from nanotouch_app.studies.plan import PRESETS
 from nanotouch_app.studies.tradeoff import FILES, answer, errors, laws, measure, page, plans, rules, touch
 from nanotouch_app.studies.tradeoff.solvers import DMT, EXACT, HERTZ, JKR, JKR_TABLE, POLISHED, SOLVERS, TABLE, Solver
 

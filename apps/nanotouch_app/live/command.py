@@ -15,13 +15,13 @@ from nanotouch import record
 from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography
 
-from nanotouch_app import output, properties, scenes, stop
+from nanotouch_app.common import output, properties, scenes, stop
+from nanotouch_app.common.quantity import parse_quantity, whole_number
 from nanotouch_app.live import display, files, hands, real
 from nanotouch_app.live.desk import Desk
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.reel import surface_of
 from nanotouch_app.live.subject import WINDOW_PRESETS, Subject
-from nanotouch_app.quantity import parse_quantity, whole_number
 from nanotouch_app.training import TASKS, named
 
 Front = Callable[[Topography], Any]  # a window or a server, over a surface

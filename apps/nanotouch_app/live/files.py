@@ -15,7 +15,7 @@ from nanotouch.errors import Error, InvalidValue
 from nanotouch.scene import read_tables
 from nanotouch.units import in_words
 
-from nanotouch_app import surfaces
+from nanotouch_app.common import surfaces
 from nanotouch_app.live import measured
 from nanotouch_app.live.subject import WINDOW_PRESETS, Subject, of_preset
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from nanotouch_app.quantity import digits as digits
+from nanotouch_app.common.quantity import digits as digits
 
 Colour = tuple[int, int, int]
 

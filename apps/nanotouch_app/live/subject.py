@@ -11,7 +11,7 @@ import numpy as np
 from nanotouch import presets
 from nanotouch.manipulation import Rod, latex, nanowire
 
-from nanotouch_app import surfaces
+from nanotouch_app.common import surfaces
 from nanotouch_app.live import samples
 from nanotouch_app.training.push import RADIUS
 

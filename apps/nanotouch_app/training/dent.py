@@ -10,7 +10,7 @@ from nanotouch import plasticity
 from nanotouch.errors import InvalidValue
 from nanotouch.plasticity import Imprint
 
-from nanotouch_app.quantity import digits
+from nanotouch_app.common.quantity import digits
 from nanotouch_app.training.exercise import Exercise, touching
 from nanotouch_app.training.task_texts import TEXTS
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from nanotouch_app.quantity import digits
+from nanotouch_app.common.quantity import digits
 from nanotouch_app.training.exercise import Exercise, touching
 from nanotouch_app.training.lesson_pages import PAGES, Page
 from nanotouch_app.training.lesson_texts import TEXTS

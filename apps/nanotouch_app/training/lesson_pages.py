@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import nanotouch as nt
 import numpy as np
 
-from nanotouch_app.quantity import digits
+from nanotouch_app.common.quantity import digits
 from nanotouch_app.training.facts import Facts
 
 Found = tuple[int, dict[str, str]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from nanotouch_app.quantity import digits
+from nanotouch_app.common.quantity import digits
 from nanotouch_app.training.exercise import Exercise, touching
 from nanotouch_app.training.task_texts import TEXTS
 

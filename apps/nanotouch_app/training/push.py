@@ -11,7 +11,7 @@ import numpy as np
 from nanotouch.manipulation import Laid
 from numpy.typing import NDArray
 
-from nanotouch_app.quantity import digits
+from nanotouch_app.common.quantity import digits
 from nanotouch_app.training.exercise import Exercise
 from nanotouch_app.training.task_texts import TEXTS
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch_app.quantity import digits
+from nanotouch_app.common.quantity import digits
 from nanotouch_app.training.exercise import Exercise
 from nanotouch_app.training.task_texts import TEXTS
 

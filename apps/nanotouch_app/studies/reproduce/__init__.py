@@ -11,7 +11,7 @@ from typing import Any
 from nanotouch.errors import InvalidValue
 from nanotouch.touch.record import write_csv
 
-from nanotouch_app import output
+from nanotouch_app.common import output
 from nanotouch_app.studies.reproduce import drawing
 from nanotouch_app.studies.reproduce.statement import Reproduction
 

@@ -13,7 +13,7 @@ from nanotouch.errors import InvalidValue, require
 from nanotouch.plots import saved
 from nanotouch.touch.record import write_csv
 
-from nanotouch_app import output
+from nanotouch_app.common import output
 from nanotouch_app.studies.tradeoff import answer, drawing, errors, laws, measure, page, plans, touch
 
 FILES = (

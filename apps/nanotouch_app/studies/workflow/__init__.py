@@ -13,10 +13,10 @@ from nanotouch import images, record
 from nanotouch.awaiting import awaited
 from nanotouch.errors import InvalidValue, require
 
-from nanotouch_app import output, stop
-from nanotouch_app.push import write_track
-from nanotouch_app.quantity import whole_number
+from nanotouch_app.common import output, stop
+from nanotouch_app.common.quantity import whole_number
 from nanotouch_app.studies.workflow import film, steps
+from nanotouch_app.touching.push import write_track
 
 FILES = ("scan.gwy", "touch.mcap", "push.csv", "predicted.gwy", "again.gwy", "workflow.json", "workflow.gif")
 
