@@ -14,6 +14,8 @@ from .._io.drawing import VERMILION, new_figure, plain, saved
 from ..units import engineering
 
 ACROSS, DOWN = 5, 6
+_WIDE, _HIGH = 3.0, 2.4  # of a picture with its labels [inch]
+_LEFT, _RIGHT, _BELOW, _ABOVE = 0.5, 0.1, 0.35, 0.4  # for the labels [inch]
 _NAME = 36  # characters that fit over a picture
 
 
@@ -40,8 +42,15 @@ def draw(
 
 def _sheet(pictures: Sequence[Mapping[str, Any]], path: Path) -> None:
     down = -(-len(pictures) // ACROSS)
-    figure = new_figure(3.0 * ACROSS, 2.4 * down + 0.3)
+    wide, high = _WIDE * ACROSS, _HIGH * down
+    figure = new_figure(wide, high)
+    figure.set_layout_engine(None)  # all pictures are alike; finding their margins took three quarters of the time
     panels = figure.subplots(down, ACROSS, squeeze=False).ravel()
+    across, up = _WIDE - _LEFT - _RIGHT, _HIGH - _BELOW - _ABOVE
+    figure.subplots_adjust(
+        left=_LEFT / wide, right=1.0 - _RIGHT / wide, bottom=_BELOW / high, top=1.0 - _ABOVE / high,
+        wspace=(_LEFT + _RIGHT) / across, hspace=(_BELOW + _ABOVE) / up,
+    )  # fmt: skip
     for panel, picture in zip(panels, pictures, strict=False):
         _curve(panel, picture)
     for panel in panels[len(pictures) :]:
@@ -59,7 +68,8 @@ def _curve(panel: Any, picture: Mapping[str, Any]) -> None:
     panel.axhline(0.0, color="0.8", lw=0.6, zorder=0)
     text = picture["text"].replace("+-", "±")
     panel.set_title(f"{plain(_short(picture['name']))}\n{text}", fontsize=6.5, color=colour)
-    panel.tick_params(labelsize=6)
+    panel.tick_params(labelsize=6, pad=2)
+    panel.locator_params(nbins=4)
     panel.set_xlabel(wide, fontsize=6, labelpad=1)
     panel.set_ylabel(strong, fontsize=6, labelpad=1)
 
