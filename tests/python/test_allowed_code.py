@@ -74,8 +74,9 @@ def _lines(file: str) -> list[list[str]]:
         ["fit", file, "--scene", file, *out], ["fit", file, "--calibration", file, *out],
         ["indent", "--scene", file, *out], ["image", file, *out], ["image", file, "--config", file, *out],
         ["map", file, *out], ["info", file], ["report", file], ["review", file], ["export", file, "x.csv"],
-        ["recover", file], ["recalibrate", file, *out], ["rig", "check", file], ["rig", "probe", file, "--seconds", "0.1"],
-        ["rig", "calibrate", file], ["samples", file], ["push", file], ["bench", file], ["workflow", file],
+        ["recover", file], ["recalibrate", file, *out], ["rig", "check", file],
+        ["rig", "probe", file, "--seconds", "0.1"], ["rig", "calibrate", file], ["samples", file],
+        ["push", file], ["bench", file], ["workflow", file],
     ]  # fmt: skip
 
 
