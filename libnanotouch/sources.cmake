@@ -268,6 +268,10 @@ set(nanotouch_sources_fit
     fit/model.cpp
     fit/options.cpp
     fit/outcome.cpp
+    fit/path_bins.cpp
+    fit/path_fit.cpp
+    fit/path_guess.cpp
+    fit/path_law.cpp
     fit/points.cpp
     fit/problem.cpp
     fit/profile.cpp

@@ -38,7 +38,7 @@ USES = {
     "hal/sim": "core forces contact friction manipulation plasticity surface scene dynamics scan hal",
     "hal/linux": "core hal hal/chips",
     "session": "core forces contact friction manipulation plasticity surface scene dynamics scan control hal hal/sim",
-    "fit": "core forces contact contact/maugis curves fit/models",
+    "fit": "core forces contact contact/maugis curves rheology fit/models",
     "fit/models": "core contact contact/maugis curves fit",
 }
 

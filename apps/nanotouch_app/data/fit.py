@@ -119,6 +119,8 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValue(f"--index {args.index}: {file} holds the curves 0 .. {len(found) - 1}")
     curve = found[args.index]
     known = knowledge(args)
+    if args.model in fitting.OVER_TIME and (args.compare or args.stability):
+        raise InvalidValue(f"--model {args.model} is fitted to the whole curve: leave out --compare and --stability")
     with output.busy("fitting"):
         result = awaited(lambda: fitting.fit_curve(curve, args.model, branch=args.branch, **known))
     with output.folder(args, FILES) as out:

@@ -6,3 +6,4 @@
 py::dict result_dict(const nt_fit_result &result);
 void bind_batch(py::module_ &module);
 void bind_solving(py::module_ &module);
+void bind_path(py::module_ &module);

@@ -234,6 +234,7 @@ PYBIND11_MODULE(_fit, module)
     bind_options(module);
     bind_batch(module);
     bind_solving(module);
+    bind_path(module);
     module.def("models", &models);
     module.def("run", &run, py::arg("options"), py::arg("position"), py::arg("force"));
     module.def("evaluate", &evaluate, py::arg("options"), py::arg("value"), py::arg("position"));

@@ -45,6 +45,28 @@ def evaluate(options: Options, value: Sequence[float], position: Floats) -> tupl
 def gradient(options: Options, value: Sequence[float], position: Floats) -> Floats: ...
 def tear_position(options: Options, value: Sequence[float]) -> float: ...
 
+class Path:
+    def __init__(
+        self, times: Floats, positions: Floats, forces: Floats, fitted: NDArray[Any], starts: list[int], /
+    ) -> None: ...
+
+class PathOptions:
+    radius: float
+    poisson_ratio: float
+    thickness: float
+    spring_constant: float
+    noise: float
+    tilt_position: float
+    drag_height: float
+    max_iterations: int
+    def __init__(self, shape: tuple[int, int, float, float], kind: int, arms: int, /) -> None: ...
+    def hold(self, place: int, value: float, /) -> None: ...
+    def start(self, place: int, value: float, /) -> None: ...
+
+path_background: int
+
+def run_path(options: PathOptions, path: Path, /) -> tuple[dict[str, Any], Floats, Floats]: ...
+
 class Known:
     sensitivity_sigma: float
     fit_offset: bool

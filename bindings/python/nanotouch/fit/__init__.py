@@ -14,7 +14,8 @@ that does not determine the modulus. How and why: docs/fit.md.
 from .arrays import PointsFit, fit_points
 from .choice import PARABOLOIDS, Candidate, Choice, choose_model
 from .fitting import TipLike, fit_curve
-from .models import Model, Parameter, add_named, models, register
+from .models import Model, Parameter, add_named, add_over_time, models, register
+from .over_time import OVER_TIME
 from .picture import draw
 from .result import FitResult
 from .sokolov import SOKOLOV, SeriesBias, series_bias
@@ -22,8 +23,10 @@ from .stability import Stability, stability
 from .uncertainties import Uncertainties
 
 add_named(SOKOLOV)
+add_over_time(OVER_TIME)
 
 __all__ = [
+    "OVER_TIME",
     "PARABOLOIDS",
     "SOKOLOV",
     "Candidate",

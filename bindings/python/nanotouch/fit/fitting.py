@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -20,7 +20,9 @@ from .reporting import Sample, Tip, make_result
 from .result import FitResult
 from .show import with_sigma
 from .solving import Setup, solve
+from .ting import DRAG_HEIGHT, Law, noise_of, track_of
 from .uncertainties import Uncertainties
+from .whole import Whole, fit_whole
 
 Loss = Literal["squares", "huber", "soft_l1", "cauchy"]
 
@@ -72,7 +74,9 @@ def fit_curve(
         ``"auto"``: by what the curve shows (``result.choice`` says why). Or a name of
         :func:`nanotouch.fit.models`: ``"maugis"``, ``"jkr"``, ``"dmt"`` (the retraction from the deepest
         point to where the tip is torn off), ``"hertz"``, ``"sphere"``, ``"cone"``, ``"pyramid"``, ``"pyramid3"``,
-        ``"layer"``, ``"layer_cone"`` (the approach, where it repels), or one of your own.
+        ``"layer"``, ``"layer_cone"`` (the approach, where it repels), or one of your own. ``"ting_power"``,
+        ``"ting_sls"``, ``"ting_prony"`` (also with ``_sphere``, ``_cone``, ``_pyramid``, ``_punch``): a viscoelastic
+        sample, approach, pauses and retraction in one fit.
     tip : object with ``radius``, optional
         For instance ``scene.tip``; its ``youngs_modulus`` and ``poisson_ratio`` enter the sample's modulus.
     radius : float, optional
@@ -90,7 +94,7 @@ def fit_curve(
     window_of : {"force", "indentation"}
         What `window` limits. Indentations are those of a fit without a window.
     branch : {"retract", "approach"}, optional
-        Default: the retraction for adhesive models, else the approach.
+        Default: the retraction for adhesive models, the whole curve for ``"ting_..."``, else the approach.
     cohesive_range : float or "free", optional
         h0 = w/sigma0 of Maugis-Dugdale [m]; 0.2 nm (atoms) is assumed where it is not given.
     uncertainties : Uncertainties, optional
@@ -115,23 +119,21 @@ def fit_curve(
         MissingExtra if the package was built without Ceres.
     """
     compiled, uncertainties = extension(), uncertainties or Uncertainties()
-    _check_choice("loss", loss, LOSSES)
-    _check_choice("window_of", window_of, ("force", "indentation"))
-    _check_choice("branch", branch or "approach", ("approach", "retract"))
-    if curve.spring_constant is None:
-        raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read, or --spring-constant")
-    report = report or analyse(curve, baseline=baseline)
+    stiffness, report = _check_choices(curve, loss, window_of, branch), report or analyse(curve, baseline=baseline)
     choice, assumptions = "", list[str]()
-    if tip is None and radius is None and curve.tip_radius is not None:
-        radius = curve.tip_radius
+    if tip is None and radius is None and (radius := curve.tip_radius) is not None:
         assumptions = [f"tip radius {with_sigma(radius, 0.0, 'm')} (as the file states)"]
     if model == AUTO:
         size, reach = _size(tip, radius), cohesive_range if isinstance(cohesive_range, float) else ASSUMED_RANGE
         model, branch, choice = first_choice(
-            report, curve.spring_constant, size, reach, sharp=half_angle is not None, layer=thickness is not None,
+            report, stiffness, size, reach, sharp=half_angle is not None, layer=thickness is not None,
             branch=branch,
         )  # fmt: skip
     chosen = find(model)
+    if chosen.kernel:
+        _check_over_time(chosen.name, loss=loss != "squares", window_of=window_of != "force", bounds=bool(bounds))
+        what = Given(report, branch, window, _held(fixed or {}, contact_point), uncertainties, poisson_ratio)
+        return _over_time(curve, chosen, TipSize(tip, radius, half_angle, thickness), what, assumptions)
     branch = branch or ("retract" if chosen.adhesive else "approach")
     points = points_of(report, branch, chosen, window if window_of == "force" else None, curve.name)
     held = _held(fixed or {}, contact_point)
@@ -142,7 +144,7 @@ def fit_curve(
         model=chosen,
         radius=_radius(chosen, tip, radius, assumptions),
         half_angle=_half_angle(chosen, half_angle, assumptions),
-        spring_constant=curve.spring_constant,
+        spring_constant=stiffness,
         held=held,
         bounds={name: _position_bounds(name, pair) for name, pair in (bounds or {}).items()},
         free_range=cohesive_range == "free",
@@ -166,9 +168,70 @@ def fit_curve(
     return made if chosen.adhesive else doubt_free_part(made, report, branch)
 
 
+def _check_choices(curve: ForceCurve, loss: str, window_of: str, branch: str | None) -> float:
+    """The curve's spring constant [N/m], after what can be wrong with any model."""
+    _check_choice("loss", loss, LOSSES)
+    _check_choice("window_of", window_of, ("force", "indentation"))
+    _check_choice("branch", branch or "approach", ("approach", "retract"))
+    if curve.spring_constant is None:
+        raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read, or --spring-constant")
+    return curve.spring_constant
+
+
 def _check_choice(name: str, value: str, valid: tuple[str, ...]) -> None:
     if value not in valid:
         raise InvalidValue(f"{name} {value!r}: valid are {', '.join(valid)}")
+
+
+class TipSize(NamedTuple):
+    """What was given of the tip, and of the sample's thickness."""
+
+    tip: TipLike | None
+    radius: float | None
+    half_angle: float | None
+    thickness: float | None
+
+
+class Given(NamedTuple):
+    """What else a fit of a whole curve takes."""
+
+    report: CurveReport
+    branch: Branch | None
+    window: Window | None
+    held: dict[str, float]
+    uncertainties: Uncertainties
+    poisson_ratio: float | None
+
+
+def _over_time(curve: ForceCurve, model: Model, size: TipSize, given: Given, assumptions: list[str]) -> FitResult:
+    """A fit of the whole curve, or of the approach alone."""
+    if given.branch == "retract":
+        raise InvalidValue(f"model {model.name!r} is fitted to the whole curve, or to the approach alone")
+    assert curve.spring_constant is not None
+    held = given.held
+    law = Law(
+        model=model,
+        radius=_radius(model, size.tip, size.radius, assumptions),
+        half_angle=_half_angle(model, size.half_angle, assumptions),
+        thickness=layer_of(model, size.thickness, given.poisson_ratio, held).get("thickness", 0.0),
+        spring_constant=curve.spring_constant,
+        noise=noise_of(given.report),
+        drag_height=held.pop(DRAG_HEIGHT, 0.0),
+        held=held,
+    )
+    law.check_names(extension())
+    track = track_of(curve, given.report, approach_only=given.branch == "approach", window=given.window)
+    known, sharp = size.tip is not None or size.radius is not None, model.sides is not None
+    assumptions += given.uncertainties.assumptions(sharp=sharp, layer=law.thickness > 0.0)
+    told = Tip("", known, size.half_angle is None if sharp else not known)
+    return fit_whole(Whole(curve, given.report, law, track), given.uncertainties,
+                     Sample(given.poisson_ratio, size.tip), assumptions, told)  # fmt: skip
+
+
+def _check_over_time(name: str, **given: bool) -> None:
+    for argument, refused in given.items():
+        if refused:
+            raise InvalidValue(f"{argument} does not go with model {name!r}, which is fitted to the whole curve")
 
 
 def _check_names(setup: Setup, parameters: tuple[tuple[str, str, float, float] | None, ...]) -> None:

@@ -90,6 +90,8 @@ class Model:
     """of the library: n of F ~ E* delta^n without adhesion"""
     transition: float = 0.0
     """of the library: Maugis' lambda that stands for its range of adhesion; 0: it has one, or no adhesion"""
+    kernel: str = ""
+    """of the library: how the sample relaxes, of models that are fitted to a whole curve over time; else empty"""
     remark: Callable[[float, dict[str, float], float], str] | None = None
     """of radius [m], values and largest force [N]: a note to each result"""
 
@@ -137,14 +139,18 @@ def built_in() -> dict[str, Model]:
 
 def is_sharp(name: str) -> bool:
     """Whether the tip of a model of the library has an angle and no radius."""
-    return name in built_in() and built_in()[name].sides is not None
+    known = built_in() | _over_time
+    return name in known and known[name].sides is not None
 
 
 def layer_of(
     model: Model, thickness: float | None, poisson_ratio: float | None, held: Mapping[str, float]
 ) -> dict[str, float]:
     """The thickness to hold [m], empty of a half-space; raises InvalidValue where it does not go with the model."""
-    if not model.is_layer:
+    if model.kernel and model.sides in (None, 0) and model.tip in ("paraboloid", "cone"):
+        if thickness is None:
+            return {}
+    elif not model.is_layer:
         if thickness is not None:
             layers = ", ".join(name for name, known in built_in().items() if known.is_layer)
             raise InvalidValue(f"model {model.name!r} is of a half-space: thickness goes with {layers}")
@@ -159,12 +165,18 @@ def layer_of(
     return {"thickness": float(thickness)}
 
 
+_over_time: dict[str, Model] = {}  # of the library, fitted to a whole curve
 _own: dict[str, Model] = {}  # written in Python: the library's, and those that were registered
 _named: set[str] = set()  # the library's among them
 
 
 def _known() -> dict[str, Model]:
-    return built_in() | _own
+    return built_in() | (_over_time if built_in() else {}) | _own
+
+
+def add_over_time(rows: Mapping[str, Model]) -> None:
+    """The library's models that are fitted to a whole curve over time."""
+    _over_time.update(rows)
 
 
 def add_named(model: Model) -> None:
@@ -187,7 +199,7 @@ def register(model: Model) -> None:
     InvalidValue
         If its description is not complete.
     """
-    if model.name in _named or model.name in built_in():
+    if model.name in _named or model.name in built_in() or model.name in _over_time:
         raise InvalidValue(f"model {model.name!r} is one of the library; give yours another name")
     check(model)
     _own[model.name] = model
@@ -217,7 +229,7 @@ def title_of(name: str) -> str:
 def find(model: str | Model) -> Model:
     """The model of a name; a Model is returned as it is."""
     if isinstance(model, Model):
-        if model.force is not None or model.name not in built_in():
+        if model.force is not None or model.name not in built_in() | _over_time:
             check(model)
         return model
     known = _known()

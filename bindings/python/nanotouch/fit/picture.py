@@ -15,6 +15,8 @@ from nanotouch.units import engineering, in_words
 from .models import Floats, is_sharp
 from .result import FitResult
 
+_FREE = 0.4  # of the depth: how much of the free part is shown beside a whole curve's contact
+
 
 def draw(curve: ForceCurve, result: FitResult, save: str | os.PathLike[str] | None = None) -> Any:
     """Draw a fit.
@@ -73,8 +75,10 @@ def _fitted(panel: Any, result: FitResult) -> None:
     travel = result.z - result.values["contact_point"]
     scale_z = engineering("m", travel)[1]
     strong, scale_f = engineering("N", result.force)
-    colour = VERMILION if result.branch == "retract" else BLUE
-    panel.plot(travel * scale_z, result.force * scale_f, ".", color=colour, ms=3, alpha=0.6, label="measured")
+    for part, colour, label in _parts(result):
+        panel.plot(
+            travel[part] * scale_z, result.force[part] * scale_f, ".", color=colour, ms=3, alpha=0.6, label=label
+        )
     panel.plot(travel * scale_z, result.fitted * scale_f, color="black", lw=1.2, label=result.title)
     panel.axhline(0.0, color="0.4", lw=0.8, ls="--")
     panel.axvline(0.0, color=GREEN, lw=1.0, ls=":")
@@ -83,8 +87,18 @@ def _fitted(panel: Any, result: FitResult) -> None:
     panel.set_ylabel(f"force $F$ ({strong})")
     panel.tick_params(labelbottom=False)
     panel.legend(loc="center right", fontsize=8)
-    branch = "retraction" if result.branch == "retract" else "approach"
+    branch = "retraction" if result.branch == "retract" else result.branch
+    if result.time is not None:  # of a long free part little is seen
+        panel.set_xlim(1.1 * travel.min() * scale_z, -_FREE * travel.min() * scale_z)
     panel.set_title(f"the {result.z.size} points of the {branch} that were fitted", fontsize=9)
+
+
+def _parts(result: FitResult) -> list[tuple[slice, str, str]]:
+    """Points that are drawn alike, with colour and label: of a whole curve what comes after its deepest point apart."""
+    if result.time is None:
+        return [(slice(None), VERMILION if result.branch == "retract" else BLUE, "measured")]
+    turn = int(np.argmin(result.z)) + 1
+    return [(slice(turn), BLUE, "to the deepest point"), (slice(turn, None), VERMILION, "after it")]
 
 
 def _residuals(panel: Any, result: FitResult) -> None:
@@ -105,6 +119,8 @@ def _box(result: FitResult) -> str:
         "effective_modulus": "$E^*$",
         "work_of_adhesion": "$w$",
         "youngs_modulus": "$E$",
+        "exponent": r"$\beta$",
+        "relaxation_time": r"$\tau$",
         "cohesive_range": "$h_0$",
     }
     lines = [f"{symbol} = {result.show(key)}" for key, symbol in symbols.items() if key in result.values]

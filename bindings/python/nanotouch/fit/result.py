@@ -12,10 +12,12 @@ import numpy as np
 from nanotouch._io.words import times
 from nanotouch.curves import CurveReport
 from nanotouch.errors import InvalidValue
+from nanotouch.rheology import Rheology
 from nanotouch.scene import Scene
 
 from .answer import Answer, answer_of
 from .models import Floats, built_in
+from .over_time import rheology_of
 from .points import Branch
 from .show import Page, Row, as_html, as_text, between, newton
 from .show import with_sigma as with_sigma
@@ -90,7 +92,7 @@ class FitResult:
     model: str
     title: str
     valid: str
-    branch: Branch
+    branch: Branch | Literal["whole curve"]
     values: Mapping[str, float]
     sigma: Mapping[str, float]
     sigma_statistical: Mapping[str, float]
@@ -128,6 +130,13 @@ class FitResult:
     radius_given: bool = True
     assumed_tip: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
+    time: Floats | None = None
+    """of each point [s], of models that are fitted to the whole curve"""
+
+    @property
+    def rheology(self) -> Rheology | None:
+        """How the sample relaxes, of models over time: E where the Poisson ratio was given, else E*."""
+        return None if self.time is None else rheology_of(self.model, self.values)
 
     @property
     def status(self) -> Status:

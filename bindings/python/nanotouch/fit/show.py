@@ -20,6 +20,10 @@ MEANING = {
     "force_offset": "correction of the baseline",
     "force_tilt": "correction of its tilt",
     "sensitivity": "true over assumed",
+    "exponent": "beta of the power law",
+    "arm_modulus": "E_1, what relaxes",
+    "relaxation_time": "tau",
+    "drag": "of the lever at the surface, over its speed",
 }
 _COLOURS = {True: "#1a7f37", False: "#c0392b", None: "#666666"}
 

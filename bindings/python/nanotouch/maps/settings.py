@@ -50,6 +50,8 @@ class Settings:
     stated_radius: bool = False  # the radius is the file's
 
     def __post_init__(self) -> None:
+        if find(self.model).kernel:
+            raise InvalidValue(f"model {self.model!r} is fitted to whole curves over time; a map takes the others so far")
         if find(self.model).force is not None:
             raise InvalidValue(f"model {self.model!r} is a function in Python; maps take those of the library")
         choices = (

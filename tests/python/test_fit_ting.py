@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fits of whole curves over time, against closed forms and brute-force quadrature."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch import fit
+from nanotouch.curves import ForceCurve, Segment
+from nanotouch.errors import InvalidValue, SolverError
+from nanotouch.fit.unified import unified_interval
+from ting_curves import POISSON, RADIUS, STIFFNESS, Sample, curve_of
+from ting_oracle import force as quadrature
+
+EXACT = fit.Uncertainties(sensitivity=0.0)
+HERE = {"radius": RADIUS, "poisson_ratio": POISSON, "uncertainties": EXACT}
+
+
+# Without noise only the binning and the law's own 5e-7 of F_max are left.
+@pytest.mark.parametrize("exponent", [0.0, 0.05, 0.2, 0.5])
+@pytest.mark.parametrize("speed", [1e-6, 2e-5])
+def test_a_curve_without_noise_gives_its_sample_back(exponent: float, speed: float) -> None:
+    sample = Sample(2e3, exponent, speed)
+    found = fit.fit_curve(curve_of(sample, noise=1e-14), "ting_power", **HERE)
+    assert found.status == "ok"
+    assert found.branch == "whole curve"
+    assert found.values["youngs_modulus"] == pytest.approx(2e3, rel=3e-4)
+    assert found.values["exponent"] == pytest.approx(exponent, abs=1e-4)
+
+
+def test_cone_and_its_bias() -> None:
+    scale = 2 / np.pi * np.tan(0.6)
+    sample = Sample(2e3, 0.2, power=2.0, scale=scale)
+    found = fit.fit_curve(
+        curve_of(sample, noise=1e-14), "ting_power_cone", half_angle=0.6, poisson_ratio=0.5, uncertainties=EXACT
+    )
+    assert found.values["youngs_modulus"] == pytest.approx(2e3, rel=3e-4)
+    assert found.values["exponent"] == pytest.approx(0.2, abs=1e-4)
+
+
+# 60 curves: means within 3.5 of their own standard errors; coverage of 95 % within 3.5 of a binomial's sigma (2.8 %).
+# tests/heavy/fit_ting.py has 2 000 with the issue's own bounds.
+def test_values_are_unbiased_and_intervals_hold() -> None:
+    rng = np.random.default_rng(5)
+    pulls, inside = [], []
+    for seed in range(60):
+        speed, noise = (1e-6, 2e-5)[seed % 2], rng.uniform(8e-12, 20e-12)
+        sample = Sample(1e3, rng.uniform(0.0, 0.5), speed).with_peak(rng.uniform(3e-9, 6e-9))
+        found = fit.fit_curve(curve_of(sample, noise=noise, drag=2e-6, seed=seed), "ting_power", **HERE)
+        true = {"youngs_modulus": sample.modulus, "exponent": sample.exponent}
+        pulls.append([(found.values[key] - value) / found.sigma[key] for key, value in true.items()])
+        inside.append([found.interval[key][0] <= value <= found.interval[key][1] for key, value in true.items()])
+        assert found.values["youngs_modulus"] == pytest.approx(sample.modulus, rel=0.01)
+    assert np.all(np.abs(np.mean(pulls, axis=0)) < 3.5 / np.sqrt(60))
+    assert np.all(np.mean(inside, axis=0) > 0.95 - 3.5 * 0.028)
+
+
+def test_drag_is_told_from_the_sample() -> None:
+    sample = Sample(2e3, 0.2, 2e-5)
+    found = fit.fit_curve(curve_of(sample, noise=5e-12, drag=3e-6, seed=2), "ting_power", **HERE)
+    assert found.values["drag"] == pytest.approx(3e-6, abs=5 * found.sigma["drag"])
+    assert 0.0 < found.sigma["drag"] < 3e-7
+    assert found.values["exponent"] == pytest.approx(0.2, abs=5 * found.sigma["exponent"])
+
+
+def with_pause(kernel, exponent: float, points: int = 40) -> ForceCurve:
+    """Down in a second, half a second at rest, back: forces by quadrature for an indentation in straight lines."""
+    speed, depth = 1e-6, 1e-6
+    time = np.concatenate([np.linspace(0.0, 1.0, points + 1), 1.0 + np.linspace(0.0, 0.5, points + 1)[1:],
+                           1.5 + np.linspace(0.0, 1.0, points + 1)[1:]])  # fmt: skip
+    indentation = np.interp(time, [0.0, 1.0, 1.5, 2.5], [0.0, depth, depth, 0.0])
+
+    def slope(delta: np.ndarray) -> np.ndarray:
+        return 2.0 * np.sqrt(RADIUS * delta)
+
+    corners = np.array([0.0, 1.0, 1.5, 2.5])
+
+    def at(now: float) -> float:  # three straight pieces at most
+        times = np.append(corners[corners < now], now)
+        depths = np.interp(times, time, indentation)
+        return quadrature(kernel, exponent, slope, times, depths, times.size - 1)
+
+    forces = [0.0] + [at(now) for now in time[1:]]
+    free = np.arange(1, points + 1) / points
+    force = np.concatenate([0.0 * free, np.array(forces) / (1 - POISSON**2), 0.0 * free])
+    depths = np.concatenate([-speed * free[::-1], indentation, -speed * free])
+    time = np.concatenate([-free[::-1], time, 2.5 + free])
+    z = -(depths + force / STIFFNESS)
+    force = force + 1e-14 * np.random.default_rng(1).normal(size=force.size)
+    ends = [0, 2 * points + 1, 3 * points + 1, time.size]
+    roles = ("approach", "pause", "retract")
+    return ForceCurve(
+        tuple(
+            Segment(role, (time + 1.0)[a:b], z[a:b], "height (measured)", force[a:b], force[a:b] / STIFFNESS)
+            for role, a, b in zip(roles, ends[:-1], ends[1:], strict=True)
+        ),
+        {"spring constant": STIFFNESS, "sensitivity": 5e-8},
+        "with a pause",
+    )
+
+
+# 40 points a segment: the indentation given in straight lines, the fit's base is; 1e-3 is what that leaves.
+def test_pause_and_both_branches_in_one_fit() -> None:
+    curve = with_pause(lambda t: 2e3 * t**-0.3, 0.3)
+    found = fit.fit_curve(curve, "ting_power", **HERE)
+    assert found.values["youngs_modulus"] == pytest.approx(2e3, rel=1e-3)
+    assert found.values["exponent"] == pytest.approx(0.3, abs=1e-3)
+    assert found.rheology is not None
+    assert found.rheology.relaxation(1.0) == pytest.approx(found.values["youngs_modulus"], rel=1e-12)
+
+
+def test_standard_linear_solid_and_prony_series() -> None:
+    solid = nt.Rheology.standard_linear_solid(1e3, 1.5e3, 0.3)
+    found = fit.fit_curve(with_pause(lambda t: 1e3 + 1.5e3 * np.exp(-t / 0.3), 0.0), "ting_sls", **HERE)
+    ratio = found.values["arm_modulus"] / found.values["effective_modulus"]
+    assert found.values["youngs_modulus"] == pytest.approx(1e3, rel=1e-3)
+    assert (ratio, found.values["relaxation_time"]) == pytest.approx((1.5, 0.3), rel=2e-3)
+    assert found.rheology is not None
+    np.testing.assert_allclose(found.rheology.relaxation([0.1, 1.0]), solid.relaxation([0.1, 1.0]), rtol=1e-3)
+    curve = with_pause(lambda t: 1e3 + 1e3 * np.exp(-t / 0.05) + 5e2 * np.exp(-t / 0.6), 0.0)
+    found = fit.fit_curve(curve, "ting_prony", **HERE)
+    assert found.rheology is not None
+    true = nt.Rheology.prony(1e3, (1e3, 5e2), (0.05, 0.6))
+    np.testing.assert_allclose(
+        found.rheology.relaxation([0.05, 0.2, 1.0]), true.relaxation([0.05, 0.2, 1.0]), rtol=5e-3
+    )
+
+
+def test_calibration_enters_the_uncertainty() -> None:
+    curve = curve_of(Sample(2e3, 0.2), noise=1e-11)
+    known = fit.Uncertainties(sensitivity=0.0, spring_constant=0.1, radius=0.02)
+    found = fit.fit_curve(curve, "ting_power", **(HERE | {"uncertainties": known}))
+    exact = fit.fit_curve(curve, "ting_power", **HERE)
+    softer = fit.fit_curve(curve, "ting_power", **(HERE | {"radius": 1.01 * RADIUS}))
+    by_radius = np.log(exact.values["youngs_modulus"] / softer.values["youngs_modulus"]) / np.log(1.01)
+    assert by_radius == pytest.approx(0.5, rel=1e-3)  # E goes as 1/sqrt(R)
+    sigma = found.sigma_calibration["youngs_modulus"] / found.values["youngs_modulus"]
+    assert sigma == pytest.approx(np.hypot(0.1, 0.01), rel=0.05)  # E as k_c, at a given deflection
+    assert exact.sigma_calibration["youngs_modulus"] == 0.0
+
+
+def test_an_approach_alone_has_no_drag_and_wider_intervals() -> None:
+    curve = curve_of(Sample(2e3, 0.2), noise=1e-11, seed=3)
+    found = fit.fit_curve(curve, "ting_power", branch="approach", **HERE)
+    whole = fit.fit_curve(curve, "ting_power", **HERE)
+    assert found.branch == "approach"
+    assert found.sigma["drag"] == 0.0
+    assert found.sigma["exponent"] > 3.0 * whole.sigma["exponent"]
+    assert found.interval["exponent"][0] < 0.2 < found.interval["exponent"][1]
+
+
+def test_held_values_stay() -> None:
+    curve = curve_of(Sample(2e3, 0.2), noise=1e-11, seed=4)
+    held = fit.fit_curve(curve, "ting_power", fixed={"exponent": 0.1, "drag_height": 5e-6}, **HERE)
+    assert held.values["exponent"] == 0.1
+    assert held.sigma["exponent"] == 0.0
+    assert held.misfit > 3.0
+    assert held.values["drag_height"] == 5e-6
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"branch": "retract"}, "whole curve"),
+        ({"loss": "huber"}, "loss"),
+        ({"bounds": {"exponent": (0.0, 0.1)}}, "bounds"),
+        ({"fixed": {"exponent": 0.9}}, "exponent 0.9: valid is 0 to 0.85"),
+        ({"fixed": {"work_of_adhesion": 1.0}}, "parameter 'work_of_adhesion'"),
+        ({"thickness": 1e-6, "poisson_ratio": 0.3}, "poisson_ratio 0.3"),
+        ({"radius": 1e-8}, "contact radius|indentation"),
+    ],
+)  # fmt: skip
+def test_what_does_not_go_together_is_refused(changes: dict, words: str) -> None:
+    curve = curve_of(Sample(2e3, 0.2), noise=1e-11)
+    model = "ting_power_sphere" if "radius" in changes else "ting_power"
+    with pytest.raises(InvalidValue, match=words):
+        fit.fit_curve(curve, model, **(HERE | changes))
+
+
+def test_curves_that_cannot_be_fitted_say_why() -> None:
+    curve = curve_of(Sample(2e3, 0.2), noise=1e-11)
+    with pytest.raises(InvalidValue, match="records no times"):
+        fit.fit_curve(curve_of(Sample(2e3, 0.2), noise=1e-11, times=False), "ting_power", **HERE)
+    with pytest.raises(InvalidValue, match="no approach"):
+        fit.fit_curve(replace(curve, segments=curve.segments[1:]), "ting_power", **HERE)
+    with pytest.raises(SolverError):
+        fit.fit_curve(curve_of(Sample(1e-2, 0.2), noise=1e-11), "ting_power", **HERE)
+
+
+# Feldman and Cousins 1998, table X, 95 %.
+@pytest.mark.parametrize(("measured", "upper"), [(0.0, 1.96), (1.0, 2.96), (3.0, 4.96)])
+def test_unified_interval_against_the_published_table(measured: float, upper: float) -> None:
+    assert unified_interval(measured, 1.0)[1] == pytest.approx(upper, abs=0.01)
+
+
+def test_unified_interval_covers() -> None:
+    rng = np.random.default_rng(1)
+    for true in (0.0, 0.3, 1.0, 2.5, 6.0):
+        ends = np.array([unified_interval(2.0 * x, 2.0) for x in rng.normal(true, 1.0, 2000)]) / 2.0
+        assert np.mean((ends[:, 0] <= true) & (true <= ends[:, 1])) == pytest.approx(0.95, abs=0.016)
