@@ -108,7 +108,6 @@ def test_pause_and_both_branches_in_one_fit() -> None:
     found = fit.fit_curve(curve, "ting_power", **HERE)
     assert found.values["youngs_modulus"] == pytest.approx(2e3, rel=1e-3)
     assert found.values["exponent"] == pytest.approx(0.3, abs=1e-3)
-    assert found.rheology is not None
     assert found.rheology.relaxation(1.0) == pytest.approx(found.values["youngs_modulus"], rel=1e-12)
 
 
@@ -118,11 +117,9 @@ def test_standard_linear_solid_and_prony_series() -> None:
     ratio = found.values["arm_modulus"] / found.values["effective_modulus"]
     assert found.values["youngs_modulus"] == pytest.approx(1e3, rel=1e-3)
     assert (ratio, found.values["relaxation_time"]) == pytest.approx((1.5, 0.3), rel=2e-3)
-    assert found.rheology is not None
     np.testing.assert_allclose(found.rheology.relaxation([0.1, 1.0]), solid.relaxation([0.1, 1.0]), rtol=1e-3)
     curve = with_pause(lambda t: 1e3 + 1e3 * np.exp(-t / 0.05) + 5e2 * np.exp(-t / 0.6), 0.0)
     found = fit.fit_curve(curve, "ting_prony", **HERE)
-    assert found.rheology is not None
     true = nt.Rheology.prony(1e3, (1e3, 5e2), (0.05, 0.6))
     np.testing.assert_allclose(
         found.rheology.relaxation([0.05, 0.2, 1.0]), true.relaxation([0.05, 0.2, 1.0]), rtol=5e-3
@@ -178,6 +175,27 @@ def test_what_does_not_go_together_is_refused(changes: dict, words: str) -> None
     model = "ting_power_sphere" if "radius" in changes else "ting_power"
     with pytest.raises(InvalidValue, match=words):
         fit.fit_curve(curve, model, **(HERE | changes))
+
+
+def test_other_models_know_no_time() -> None:
+    found = fit.fit_curve(curve_of(Sample(2e3, 0.0), noise=1e-11), "hertz", radius=RADIUS)
+    with pytest.raises(InvalidValue, match="knows no time"):
+        _ = found.rheology
+
+
+def test_map_of_the_exponent_beside_the_modulus() -> None:
+    curves = [curve_of(Sample(1e3 + 500 * i, 0.1 * i), 400, noise=5e-12, seed=i) for i in range(3)]
+    curves.append(replace(curves[0], segments=curves[0].segments[1:]))
+    data = nt.maps.fit(curves, "ting_power", radius=RADIUS, poisson_ratio=POISSON)
+    np.testing.assert_allclose(data["youngs_modulus"].values[0, :3], [1000, 1500, 2000], rtol=0.02)
+    np.testing.assert_allclose(data["exponent"].values[0, :3], [0.0, 0.1, 0.2], atol=0.005)
+    assert np.isnan(data["exponent"].values[0, 3])
+    assert "no approach" in str(data["reason"].values[0, 3])
+    assert nt.maps.determined(data, "exponent").tolist() == [[True, True, True, False]]
+    low, high = data["exponent_low"].values[0, :3], data["exponent_high"].values[0, :3]
+    assert np.all((low <= [0.0, 0.1, 0.2]) & (high >= [0.0, 0.1, 0.2]))
+    with pytest.raises(InvalidValue, match="array has no times"):
+        nt.maps.fit(np.zeros((1, 1, 40)), "ting_power", z=np.linspace(1e-6, 0, 40), spring_constant=0.1, radius=RADIUS)
 
 
 def test_curves_that_cannot_be_fitted_say_why() -> None:

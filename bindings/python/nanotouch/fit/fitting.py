@@ -131,7 +131,7 @@ def fit_curve(
         )  # fmt: skip
     chosen = find(model)
     if chosen.kernel:
-        _check_over_time(chosen.name, loss=loss != "squares", window_of=window_of != "force", bounds=bool(bounds))
+        check_over_time(chosen.name, loss=loss != "squares", window_of=window_of != "force", bounds=bool(bounds))
         what = Given(report, branch, window, _held(fixed or {}, contact_point), uncertainties, poisson_ratio)
         return _over_time(curve, chosen, TipSize(tip, radius, half_angle, thickness), what, assumptions)
     branch = branch or ("retract" if chosen.adhesive else "approach")
@@ -228,7 +228,8 @@ def _over_time(curve: ForceCurve, model: Model, size: TipSize, given: Given, ass
                      Sample(given.poisson_ratio, size.tip), assumptions, told)  # fmt: skip
 
 
-def _check_over_time(name: str, **given: bool) -> None:
+def check_over_time(name: str, **given: bool) -> None:
+    """Raise InvalidValue for arguments, by name, that do not go with a model over time."""
     for argument, refused in given.items():
         if refused:
             raise InvalidValue(f"{argument} does not go with model {name!r}, which is fitted to the whole curve")

@@ -134,9 +134,12 @@ class FitResult:
     """of each point [s], of models that are fitted to the whole curve"""
 
     @property
-    def rheology(self) -> Rheology | None:
-        """How the sample relaxes, of models over time: E where the Poisson ratio was given, else E*."""
-        return None if self.time is None else rheology_of(self.model, self.values)
+    def rheology(self) -> Rheology:
+        """How the sample relaxes, of models over time: E where the Poisson ratio was given, else E*. InvalidValue for
+        the others."""
+        if self.time is None:
+            raise InvalidValue(f"model {self.model!r} knows no time; ting_power, ting_sls and ting_prony do")
+        return rheology_of(self.model, self.values)
 
     @property
     def status(self) -> Status:

@@ -115,6 +115,12 @@ class Law:
         return options
 
 
+def parameters_of(model: Model) -> dict[str, tuple[int, str]]:
+    """Number and unit of each parameter of a model."""
+    units = {one.name: one.unit for one in model.parameters} | {name: UNITS[name] for name in BACKGROUND}
+    return {name: (number, unit) for number, (name, unit) in enumerate(units.items())}
+
+
 class Found(NamedTuple):
     """What the C library found: by name, E* in place of a modulus."""
 

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from .._arrays import Floats
+from ..errors import InvalidValue
 from ..fit.models import extension, find
 from ..fit.uncertainties import Uncertainties
+from .over_time import Curves, fit_curves
 from .settings import Settings
 from .store import Columns
-from .volume import Block
+from .volume import Block, CurveVolume, Volume
 
 #: besides the parameters: name -> (unit, what it is); those of MEASURED have a sigma too
 MEASURED = {
@@ -40,7 +42,7 @@ EXCLUDED = "EXCLUDED"  # status of a curve that a person left out
 LOST = "LOST"  # status of a curve whose block killed the workers it was given to
 
 
-def fit_block(stored: Mapping[str, Any], block: Block, threads: int = 1) -> Columns:
+def fit_block(stored: Mapping[str, Any], block: Block | Curves, threads: int = 1) -> Columns:
     """Fit every curve of a block.
 
     Parameters
@@ -56,6 +58,8 @@ def fit_block(stored: Mapping[str, Any], block: Block, threads: int = 1) -> Colu
         ``status``, ``flags``, ``reason`` and, NaN where a curve has no result, each quantity with its ``_sigma``, for
         parameters also ``_sigma_statistical`` and ``_sigma_calibration`` [SI].
     """
+    if isinstance(block, Curves):
+        return fit_curves(stored, block, tuple(PLAIN), tuple(MEASURED))
     settings = Settings.from_json(stored)
     found = _batch(settings.recipe(), block, threads)
     columns: Columns = {"status": found["status"].astype(np.int8), "flags": found["flags"].astype(np.uint32)}
@@ -79,6 +83,15 @@ def fit_block(stored: Mapping[str, Any], block: Block, threads: int = 1) -> Colu
     for name in MEASURED:
         columns[name], columns[f"{name}_sigma"] = found[name], found[f"{name}_sigma"]
     return columns | {name: found[name] for name in PLAIN}
+
+
+def part_of(volume: Volume, stored: Mapping[str, Any], start: int, stop: int) -> Block | Curves:
+    """What :func:`fit_block` takes of a volume: with its times where the model needs them."""
+    if not Settings.from_json(stored).over_time:
+        return volume.block(start, stop)
+    if not isinstance(volume, CurveVolume):
+        raise InvalidValue("an array has no times: a map of a viscoelastic sample takes a file or a list of curves")
+    return Curves(tuple(volume.places.get(number) for number in range(start, stop)))
 
 
 def _least_modulus(settings: Settings, columns: Columns, found: dict[str, Any], block: Block) -> Floats:
@@ -177,7 +190,7 @@ def _sample_modulus(settings: Settings, columns: Columns) -> Columns:
 def lost_block(stored: Mapping[str, Any], count: int, reason: str) -> Columns:
     """The columns of a block of which nothing came back."""
     empty = Block(np.empty(0), np.empty(0), np.zeros(2 * count + 1, np.int64), np.full(count, np.nan))
-    columns = fit_block(stored, empty)
+    columns = fit_block(stored, Curves((None,) * count) if Settings.from_json(stored).over_time else empty)
     columns["status"][:] = status_names()[LOST]
     columns["reason"] = np.full(count, reason)
     return columns

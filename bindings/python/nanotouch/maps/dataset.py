@@ -30,6 +30,10 @@ _MEANINGS = {
     "effective_modulus_least": "95 % lower bound of E* where a stiff contact does not determine it",
     "effective_modulus_most": "95 % upper bound of E* where a soft contact does not determine it",
     "cohesive_range": "h0 = w/sigma0",
+    "exponent": "beta of the power law: E goes as time to the minus beta",
+    "exponent_low": "lower end of the 95 % interval of beta",
+    "exponent_high": "upper end of the 95 % interval of beta",
+    "drag": "force on the lever over its speed",
     "contact_point": "height of the base where the undeformed bodies touch: the sample's topography at no force",
 }
 _BOUNDS = ("effective_modulus_least", "effective_modulus_most")
@@ -177,6 +181,7 @@ def _units(settings: Settings) -> dict[str, str]:
     known = {name: unit for name, (_, unit) in settings.parameters().items()} | dict.fromkeys(
         ("youngs_modulus", *_BOUNDS), "Pa"
     )
+    known |= {"exponent_low": "", "exponent_high": ""}
     return known | {name: unit for name, (unit, _) in (MEASURED | PLAIN).items()}
 
 

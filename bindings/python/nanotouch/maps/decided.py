@@ -11,7 +11,7 @@ import numpy as np
 
 from ..batch.sidecar import Decision, Sidecar
 from ..errors import InvalidValue
-from .block import EXCLUDED, fit_block, status_names
+from .block import EXCLUDED, fit_block, part_of, status_names
 from .settings import Settings
 from .store import Columns
 from .volume import CurveVolume, Volume
@@ -62,5 +62,6 @@ def _fitted(stored: Mapping[str, Any], volume: Volume, place: int, decision: Dec
         settings = replace(settings, fixed=dict(settings.fixed) | {"contact_point": decision.contact_point})
     if decision.baseline is not None:
         settings = replace(settings, baseline=decision.baseline)
-    columns = fit_block(settings.as_json(), volume.block(place, place + 1))
+    stored = settings.as_json()
+    columns = fit_block(stored, part_of(volume, stored, place, place + 1))
     return {name: values[0] for name, values in columns.items()}

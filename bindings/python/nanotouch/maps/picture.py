@@ -16,11 +16,16 @@ from .dataset import determined, doubtful, flag_counts
 
 Floats = NDArray[np.float64]
 
-PANELS = ("effective_modulus", "pull_off_force", "adhesion_work", "work_of_adhesion", "contact_point")
+PANELS = (
+    "effective_modulus", "exponent", "relaxation_time", "pull_off_force", "adhesion_work", "work_of_adhesion",
+    "contact_point",
+)  # fmt: skip
 _TITLES = {
     "effective_modulus": "effective modulus $E^*$",
     "youngs_modulus": "Young's modulus $E$",
     "work_of_adhesion": "work of adhesion $w$",
+    "exponent": r"exponent $\beta$ of the power law",
+    "relaxation_time": r"relaxation time $\tau$",
     "pull_off_force": "pull-off force",
     "adhesion_work": "work of separation",
     "contact_point": "height at no force",
@@ -66,7 +71,8 @@ def _quantity(figure: Any, panel: Any, data: Any, name: str, extent: list[float]
     values = np.asarray(data[name].values, float)
     if name == "contact_point":
         values = values - np.nanmin(values) if np.isfinite(values).any() else values
-    unit, scale = engineering(data[name].attrs["units"], np.nan_to_num(values, posinf=0.0, neginf=0.0))
+    unit = "" if data[name].attrs["units"] == "1" else data[name].attrs["units"]
+    unit, scale = engineering(unit, np.nan_to_num(values, posinf=0.0, neginf=0.0)) if unit else ("", 1.0)
     good = determined(data, name)
     least = (
         np.asarray(data[f"{name}_least"].values, float) if f"{name}_least" in data else np.full(values.shape, np.nan)

@@ -17,7 +17,7 @@ from ..batch.sidecar import Decision, Sidecar
 from ..curves import CalibrationTable
 from ..errors import Error, InvalidValue, require
 from ..fit import TipLike
-from .block import fit_block, lost_block
+from .block import fit_block, lost_block, part_of
 from .dataset import assemble, put
 from .decided import Decisions, decide, decisions_of
 from .settings import Settings
@@ -153,7 +153,7 @@ Made = Iterator[tuple[int, Columns, bool]]
 
 def _made_here(volume: Volume, stored: dict[str, Any], missing: list[tuple[int, int, int]], threads: int) -> Made:
     for number, start, stop in missing:
-        yield number, fit_block(stored, volume.block(start, stop), threads), True
+        yield number, fit_block(stored, part_of(volume, stored, start, stop), threads), True
 
 
 def _made_there(volume: Volume, stored: dict[str, Any], missing: list[tuple[int, int, int]], client: Any) -> Made:
@@ -189,7 +189,7 @@ def _finished_there(
     def keep_busy() -> None:
         wanted = IN_FLIGHT * max(1, sum(client.nthreads().values()))  # workers come and go
         for block in islice(waiting, max(0, wanted - len(running))):
-            future = client.submit(fit_block, stored, volume.block(*block[1:]), 1, pure=False)
+            future = client.submit(fit_block, stored, part_of(volume, stored, *block[1:]), 1, pure=False)
             running[future] = block
             finished.add(future)
 

@@ -5,22 +5,31 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from ..curves.baseline import Kind, choice_of
 from ..errors import InvalidValue
 from ..fit import TipLike, Uncertainties
-from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, ASSUMED_RANGE, LOSSES, Loss
+from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, ASSUMED_RANGE, LOSSES, Loss, check_over_time
 from ..fit.models import extension, find, is_sharp, layer_of
 from ..fit.points import Branch
 from ..fit.show import with_sigma
 from ..fit.solving import Setup
+from ..fit.ting import parameters_of
 
 _STEP = 0.1  # standard uncertainties, for the derivatives of the result by what is calibrated
 _ANY = 1.0  # N/m, where each curve brings its own spring constant
 _TYPICAL = 1e-9  # N, where each curve brings its own noise
+
+
+class ElasticTip(NamedTuple):
+    """A tip that is not rigid."""
+
+    radius: float
+    youngs_modulus: float
+    poisson_ratio: float
 
 
 @dataclass(frozen=True)
@@ -50,8 +59,6 @@ class Settings:
     stated_radius: bool = False  # the radius is the file's
 
     def __post_init__(self) -> None:
-        if find(self.model).kernel:
-            raise InvalidValue(f"model {self.model!r} is fitted to whole curves over time; a map takes the others so far")
         if find(self.model).force is not None:
             raise InvalidValue(f"model {self.model!r} is a function in Python; maps take those of the library")
         choices = (
@@ -64,7 +71,29 @@ class Settings:
         ratio = self.poisson_ratio
         if ratio is not None and not -1.0 < ratio <= 0.5:
             raise InvalidValue(f"poisson_ratio {ratio}: valid is above -1, up to 0.5")
-        self.recipe()
+        if self.over_time:
+            self._check_over_time()
+        else:
+            self.recipe()
+
+    @property
+    def over_time(self) -> bool:
+        """Whether whole curves are fitted, with their times."""
+        return bool(find(self.model).kernel)
+
+    def _check_over_time(self) -> None:
+        refused = {"loss": self.loss != "squares", "bounds": bool(self.bounds), "branch": self.branch == "retract"}
+        check_over_time(self.model, **refused, cohesive_range=self.cohesive_range is not None)
+        layer_of(find(self.model), self.thickness, self.poisson_ratio, self.fixed)
+
+    def arguments(self) -> dict[str, Any]:
+        """Of :func:`nanotouch.fit.fit_curve`, for models over time."""
+        tip = None
+        if self.tip_modulus is not None:
+            tip = ElasticTip(ASSUMED_RADIUS if self.radius is None else self.radius, self.tip_modulus,
+                             self.tip_poisson_ratio)  # fmt: skip
+        names = ("model", "half_angle", "thickness", "poisson_ratio", "branch", "window", "uncertainties", "fixed")
+        return {name: getattr(self, name) for name in names} | {"tip": tip, "radius": None if tip else self.radius}
 
     @classmethod
     def of(cls, model: str, tip: TipLike | None, radius: float | None, given: Mapping[str, Any]) -> Settings:
@@ -138,12 +167,14 @@ class Settings:
 
     def parameters(self) -> dict[str, tuple[int, str]]:
         """Place and unit of each parameter of the model."""
+        if self.over_time:
+            return parameters_of(find(self.model))
         options = extension().Options(self.model)
         return {p[0]: (place, p[1]) for place, p in enumerate(options.parameters) if p is not None}
 
     def asks(self, name: str) -> bool:
         """Whether a parameter is what is looked for; those of baseline and calibration are known beforehand."""
-        return self.fit_offset if name == "force_offset" else name not in ("force_tilt", "sensitivity")
+        return self.fit_offset if name == "force_offset" else name not in ("force_tilt", "sensitivity", "drag")
 
     def calibrations(self) -> Iterator[tuple[Any, float, float]]:
         """For each thing that is uncertain: the recipe with it changed, by how many of its standard uncertainties, and
