@@ -84,7 +84,7 @@ PYTHON_LAYERS = {
     "measured": "images curves",
     "what there is": "scene reference scan",
     "a touch": "touch",
-    "results": "plots fit batch maps",
+    "results": "plots fit batch maps testing",
     "a process of its own": "_worker_process __main__",
 }
 # Methods for convenience, such as Recording.plot, may import what makes their answer: in a function, or for its type.

@@ -18,6 +18,7 @@ from nanotouch import reference as reference
 from nanotouch import rheology as rheology
 from nanotouch import scan as scan
 from nanotouch import scene as scene
+from nanotouch import testing as testing
 from nanotouch import touch as touch
 from nanotouch import units as units
 from nanotouch.contact import Contact as Contact
@@ -148,6 +149,7 @@ __all__ = [
     "surface",
     "surface_file",
     "tapping",
+    "testing",
     "touch",
     "units",
     "view",

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The door for other people's tests: assertions say what happened, fixtures give the same touch each time."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch import testing
+from nanotouch.errors import InvalidValue
+from nanotouch.touch.record import Recording
+
+pytest_plugins = ("pytester",)
+EXAMPLES = Path(__file__).resolve().parents[2] / "docs" / "examples" / "testing"
+QUIET = ("-p", "no:cacheprovider", "-p", "no:xdist")
+PERIOD = 1e-4  # s
+
+
+def recorded(**columns: list[float]) -> Recording:
+    """Rows of one period each, from 1.2 s on."""
+    rows = len(next(iter(columns.values())))
+    time = 1.2 + PERIOD * np.arange(rows)
+    return Recording({"time": time} | {name: np.asarray(values) for name, values in columns.items()})
+
+
+def message(check: Callable[[], object]) -> str:
+    with pytest.raises(AssertionError) as raised:
+        check()
+    return str(raised.value)
+
+
+def test_a_force_above_its_limit_is_told_with_what_came_of_it() -> None:
+    force = [0.0, 399e-9, 405e-9, 412e-9, 300e-9, 0.0]
+    touch = recorded(tip_force=force, state=[0, 0, 0, 0, 0, 1], reasons=[0, 0, 0, 0, 0, 1])
+    said = message(lambda: testing.assert_force_below(touch, 400e-9))
+    assert said == "tip force 412 nN exceeded 400 nN at 1.2002 s, and most at 1.2003 s; HOLD came 3 ticks later"
+    testing.assert_force_below(touch, 412e-9)
+    free = recorded(tip_force=force, state=[0] * 6)
+    assert "nothing stopped it" in message(lambda: testing.assert_force_below(free, 400e-9))
+    pulls = recorded(tip_force=[-413e-9], state=[2])
+    assert "413 nN exceeded 412 nN at 1.2 s; it was in RETRACT" in message(
+        lambda: testing.assert_force_below(pulls, 412e-9)
+    )
+    lost = recorded(tip_force=[0.0, np.nan])
+    assert "not known at 1.2001 s" in message(lambda: testing.assert_force_below(lost, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("limit", "channel", "words"),
+    [
+        (-1e-9, "tip_force", "limit = -1e-09 N: valid is a finite force above 0 N"),
+        (float("nan"), "tip_force", "limit = nan N"),
+        (1e-9, "gap", "channel 'gap' is no force; valid are operator_force"),
+        (1e-9, "slave_force", "the recording has no slave_force; recorded: time, tip_force"),
+    ],
+)
+def test_what_is_asked_for_must_make_sense(limit: float, channel: str, words: str) -> None:
+    with pytest.raises(InvalidValue, match=words.replace("(", r"\(")):
+        testing.assert_force_below(recorded(tip_force=[0.0]), limit, channel)
+
+
+def test_a_fault_has_its_reaction_in_time() -> None:
+    faults = nt.Faults().add("nan", "deflection", at=0.05, duration=1e-3)
+    with pytest.warns(UserWarning, match="stopped"):
+        touch = nt.Session(seed=1, faults=faults).run(operator=[nt.Input(0.0, 0.0, 0.0, 0.2)])
+    testing.assert_reacts(touch, "HOLD", after=0.05, within=2e-4)
+    testing.assert_reacts(touch, "RETRACT", after=0.05, within=5e-4)  # in the second tick in a row
+    early = message(lambda: testing.assert_reacts(touch, "HOLD", after=0.1, within=1e-3))
+    assert early.startswith("HOLD at 0.05")
+    assert early.endswith("before 0.1 s")
+    late = message(lambda: testing.assert_reacts(touch, "LATCHED", after=0.05, within=1e-3))
+    assert late.startswith("no LATCHED within 1 ms of 0.05 s; it ended in RETRACT at")
+    stopped = message(lambda: testing.assert_runs(touch))
+    assert stopped.startswith("HOLD at 0.05")
+    assert "it was in RUN in 500 of" in stopped
+    with pytest.raises(InvalidValue, match=r"after = 3.0 s: the recording holds 0 .. 0\."):
+        testing.assert_reacts(touch, "HOLD", after=3.0, within=1e-3)
+
+
+def test_what_a_session_promises_is_kept_and_a_broken_promise_is_told() -> None:
+    session = nt.Session(seed=1)
+    touch = session.run(operator=testing.scripted_hand(session, (2.0, 0.2), (-0.3, 0.1)))
+    assert np.abs(touch.tip_force).max() > 50e-9  # it touched
+    testing.assert_guarantee_kept(session, touch)
+    testing.assert_runs(touch)
+    worse = Recording(touch.columns | {"tip_force": 10.0 * touch.tip_force}, touch.metadata)
+    assert message(lambda: testing.assert_guarantee_kept(session, worse)).startswith("tip force ")
+    pushed = Recording(touch.columns | {"motor_force": touch.motor_force + 6.0}, touch.metadata)
+    assert "motor force" in message(lambda: testing.assert_guarantee_kept(session, pushed))
+
+
+def test_recordings_are_compared_channel_by_channel() -> None:
+    right = nt.Session(seed=1).run(operator=[nt.Input(0.5, 0.0, 0.0, 0.05)])
+    again = nt.Session(seed=1).run(operator=[nt.Input(0.5, 0.0, 0.0, 0.05)])
+    testing.assert_same(again, right, dict.fromkeys(right.columns, 0.0))
+    stage = right.stage_position.copy()
+    stage[[100, 200]] += [1e-9, 3e-9]
+    moved = Recording(right.columns | {"stage_position": stage}, right.metadata)
+    said = message(lambda: testing.assert_same(moved, right, {"stage_position": 0.5e-9})).splitlines()
+    assert said[0] == f"1 of {len(right.columns)} channels differ:"
+    assert said[1].startswith(f"  stage_position: 2 of {len(right)} rows by more than 500 pm; first at 0.01 s: ")
+    assert "most at 0.02" in said[1]
+    testing.assert_same(moved, right, {"stage_position": 4e-9})
+    testing.assert_same(right, Recording({"time": right.time, "gap": right.gap}))  # what is expected is compared
+    gone = Recording({"time": right.time})
+    assert message(lambda: testing.assert_same(gone, Recording({"time": right.time, "gap": right.gap}))) == (
+        "not recorded: gap"
+    )
+    assert "rows were recorded" in message(lambda: testing.assert_same(right[:10], right))
+    nothing = Recording(right.columns | {"gap": np.full(len(right), np.nan)}, right.metadata)
+    assert "gap" in message(lambda: testing.assert_same(nothing, right))
+    testing.assert_same(nothing, nothing)
+    state = Recording(right.columns | {"state": right.state + 1}, right.metadata)
+    assert "state" in message(lambda: testing.assert_same(state, right))
+    with pytest.raises(InvalidValue, match="no channel 'hight' is expected"):
+        testing.assert_same(right, right, {"hight": 1.0})
+
+
+class Pen(nt.hal.Master):
+    """A position device at rest, 0.1 mm above its middle."""
+
+    height = -1e-4
+
+    def describe(self) -> nt.hal.Capabilities:
+        return nt.hal.Capabilities()
+
+    def read(self) -> nt.hal.Reading:
+        return nt.hal.Reading(position=(np.nan, np.nan, self.height))
+
+
+class Broken(Pen):
+    height = np.nan
+
+
+def test_a_backend_that_breaks_its_contract_is_told_in_words() -> None:
+    assert testing.assert_conforms(Pen()).readings > 100
+    said = message(lambda: testing.assert_conforms(Broken()))
+    assert said.startswith("the contract of a backend is broken: ")
+    assert "position" in said
+
+
+PROGRAM = """
+import nanotouch as nt
+from nanotouch import testing
+
+def test_touch(nt_session, nt_golden):
+    session = nt_session(faults=nt.Faults())
+    touch = session.run(operator=[nt.Input(FORCE, 0.0, 0.0, 0.05)])
+    testing.assert_runs(touch)
+    nt_golden(touch[::50])
+"""
+
+
+def test_a_project_of_somebody_else_compares_with_its_golden_recording(pytester: pytest.Pytester) -> None:
+    pytest.importorskip("mcap")
+
+    def outcome(force: str, *options: str) -> pytest.RunResult:
+        pytester.makepyfile(test_theirs=PROGRAM.replace("FORCE", force))
+        return pytester.runpytest_inprocess(*QUIET, *options)
+
+    none = outcome("0.5")
+    none.assert_outcomes(failed=1)
+    none.stdout.fnmatch_lines("*test_touch.mcap to compare with: pytest --nt-update-golden writes it*")
+    outcome("0.5", "--nt-update-golden").assert_outcomes(passed=1)
+    assert (pytester.path / "golden" / "test_touch.mcap").stat().st_size < 50_000
+    outcome("0.5").assert_outcomes(passed=1)
+    other = outcome("0.6")
+    other.assert_outcomes(failed=1)
+    other.stdout.fnmatch_lines("*channels differ:*")
+
+
+def test_the_examples_of_the_docs_pass(pytester: pytest.Pytester) -> None:
+    """A laboratory's own backend, a student's own law, a window that embeds a session."""
+    if not EXAMPLES.is_dir():
+        pytest.skip("without the pages")
+    for test in EXAMPLES.glob("test_*.py"):
+        shutil.copy(test, pytester.path)
+    pytester.runpytest_inprocess(*QUIET).assert_outcomes(passed=9)
+
+
+def test_pytest_finds_the_fixtures_and_other_projects_pay_nothing_for_them() -> None:
+    (found,) = (one for one in entry_points(group="pytest11") if one.name == "nanotouch")
+    assert found.value == "pytest_nanotouch"
+    program = "import sys, pytest_nanotouch; sys.exit('nanotouch' in sys.modules or 'numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", program], timeout=60).returncode == 0
