@@ -2,7 +2,7 @@
 # Install tree: headers, libraries, the export set of find_package(nanotouch), pkg-config files.
 include(CMakePackageConfigHelpers)
 
-set(targets nanotouch)
+set(targets nanotouch nanotouch_testing)
 foreach(optional nanotouch_gpiod nanotouch_linux nanotouch_fit)
   if(TARGET ${optional})
     list(APPEND targets ${optional})

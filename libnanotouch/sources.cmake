@@ -253,6 +253,7 @@ set(nanotouch_sources_session
     session/terrain_reach.c
     session/wall_pace.c
     session/well.c)
+set(nanotouch_sources_testing testing/testing.c)
 set(nanotouch_sources_fit
     fit/batch.cpp
     fit/contact_model.cpp

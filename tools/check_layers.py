@@ -40,6 +40,7 @@ USES = {
     "session": "core forces contact friction manipulation plasticity surface scene dynamics scan control hal hal/sim",
     "fit": "core forces contact contact/maugis curves rheology fit/models",
     "fit/models": "core contact contact/maugis curves fit",
+    "testing": "core control session",
 }
 
 # The layer that each public header belongs to, where it is not named after it (contact.h, contact_equilibrium.h).
@@ -63,7 +64,7 @@ HEADERS = {
 }
 
 # What the portable layers may take from the C library: nothing that allocates, prints or knows an operating system.
-PORTABLE = USES.keys() - {"hal", "hal/linux", "session", "fit"}
+PORTABLE = USES.keys() - {"hal", "hal/linux", "session", "fit", "testing"}
 SYSTEM_HEADERS = {
     "complex", "float", "inttypes", "limits", "math", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "string",
 }  # fmt: skip

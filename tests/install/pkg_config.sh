@@ -10,7 +10,7 @@ export PKG_CONFIG_PATH
 mkdir -p "$work"
 for source in "$programs"/*.c; do
   package=nanotouch
-  case $source in *fit*) package=nanotouch-fit ;; esac
+  case $source in *fit*) package=nanotouch-fit ;; *testing*) package=nanotouch-testing ;; esac
   if ! pkg-config --exists "$package"; then
     echo "no $package: $(basename "$source") is left out"
     continue
