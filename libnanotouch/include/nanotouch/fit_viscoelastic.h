@@ -58,7 +58,7 @@ typedef struct nt_fit_path_result {
     double free_exponent; /* beta where it could fall below 0, by the last step: value[1] unless that is 0 */
     double chi_square;    /* over the noise, of the bins */
     long bins;            /* that were fitted */
-    double correlation;   /* of the residuals: by how much sigma^2 was raised for it; 1: none evident */
+    double correlation;   /* of the residuals: by how much sigma^2 was raised for it; 1: none evident [-] */
     double peak;          /* max of F [N] */
     double indentation;   /* max of delta [m] */
     double contact_time;  /* from first touch to the peak of the force [s] */
