@@ -27,15 +27,53 @@ from nanotouch_app.common.guard import REFUSED, guarded, one_line
 from nanotouch_app.common.output import as_json
 
 GROUPS = {
-    "touch": ("touching", ("live", "touch", "scan", "push", "indent", "margins")),
+    "touch": (
+        "touching",
+        {
+            "live": "touch with your own hand, in a window",
+            "touch": "touch a surface on the simulated rig",
+            "scan": "image a surface on the simulated rig",
+            "push": "push a particle to a place, under drift and noise",
+            "indent": "indent a sample that yields, and draw the dent",
+            "margins": "how far a loop is from its stability limit",
+        },
+    ),
     "measured data": (
         "data",
-        ("info", "image", "fit", "map", "report", "review", "recalibrate", "export", "recover", "samples"),
+        {
+            "info": "what a file holds: channels, size, units; segments, points, spring constant",
+            "image": "level, repair and measure an AFM image",
+            "fit": "fit a contact model to a measured force curve",
+            "map": "fit every curve of a force map",
+            "report": "one page about folders of force curves: results, rejects, Methods",
+            "review": "force curves one by one: keep, reject, contact point and baseline by hand",
+            "recalibrate": "sensitivities of many files by a lever of known stiffness (SNAP)",
+            "export": "a recording, curves, an image or a map in formats that others open",
+            "recover": "finish what a killed process left of a recording",
+            "samples": "write an image, a force curve, a map and a scene to try",
+        },
     ),
-    "rig": ("rigs", ("rig", "latency", "doctor")),
-    "studies": ("studies", ("plan", "curve", "tradeoff", "bench", "reproduce", "workflow")),
+    "rig": (
+        "rigs",
+        {
+            "rig": "check a rig file, probe its machine, calibrate it, allow its code",
+            "latency": "how late this machine wakes a real-time loop up",
+            "doctor": "what is installed and works here, and what to install for the rest",
+        },
+    ),
+    "studies": (
+        "studies",
+        {
+            "plan": "say what has to be computed for a scene, and why",
+            "curve": "compute a force-distance curve",
+            "tradeoff": "measure speed and accuracy of every contact model and tier",
+            "bench": "measure the cost of every law in ns and in Hertz",
+            "reproduce": "compute the paper's figures and judge its statements",
+            "workflow": "scan, touch, push, scan again: the paper's work as one film",
+        },
+    ),
 }
-"""what ``--help`` shows: title, and the package that holds the commands"""
+"""what ``--help`` shows, which loads none of them: title; the package that holds the commands; what each does"""
 COMMANDS = tuple(command for _, commands in GROUPS.values() for command in commands)
 EPILOG = """exit status:
   0    done
@@ -85,12 +123,10 @@ class GroupedParser(Parser):
 
     def format_help(self) -> str:
         """The help, with the commands where argparse would put one long list."""
-        subparsers = next(action for action in self._actions if isinstance(action, argparse._SubParsersAction))
-        helps = {action.dest: action.help for action in subparsers._get_subactions()}
         parts = [self.description or "", self.format_usage().strip()]
         parts.append(f"start with:\n{examples.table(examples.FIRST)}")
         for title, (_, commands) in GROUPS.items():
-            rows = (f"  {name:13}{helps[name]}" for name in commands if name in helps)
+            rows = (f"  {name:13}{does}" for name, does in commands.items())
             parts.append("\n".join((f"{title}:", *rows)))
         return "\n\n".join((*parts, f"nanotouch COMMAND --help shows options and examples.\n\n{EPILOG}\n"))
 
@@ -103,16 +139,19 @@ def meant(word: str, known: Sequence[str]) -> str:
 
 
 def build_parser(commands: Sequence[str] = COMMANDS) -> Parser:
-    """The parser with these sub-commands; each of them has to be loaded."""
+    """The parser of all sub-commands; the options of these, each of which has to be loaded."""
     parser = GroupedParser(
         prog="nanotouch",
         description="Touch nanoscale surfaces: feel, model and measure the forces at an AFM tip.",
     )
     parser.add_argument("--version", action="version", version=f"nanotouch {nt.__version__}")
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
-    for command in commands:
-        _module(command).add_parser(subparsers)
-        _complete(subparsers.choices[command], command)
+    for command in COMMANDS:
+        if command in commands:
+            _module(command).add_parser(subparsers)
+            _complete(subparsers.choices[command], command)
+        elif not commands:  # only named, in the help or in a refusal
+            subparsers.add_parser(command)
     return parser
 
 
@@ -181,8 +220,7 @@ def _of_option(message: str, args: argparse.Namespace) -> str:
 def _parsed(arguments: list[str]) -> argparse.Namespace:
     """The arguments; for a shell that asks what may come next, the answer instead."""
     asked = os.environ.get("COMP_LINE", "").split()[1:2] if "_ARGCOMPLETE" in os.environ else arguments[:1]
-    needed = () if asked == ["--version"] else asked if asked and asked[0] in COMMANDS else COMMANDS
-    parser = build_parser(needed)
+    parser = build_parser([command for command in COMMANDS if asked == [command]])
     if "_ARGCOMPLETE" in os.environ:
         with suppress(ImportError):
             importlib.import_module("argcomplete").autocomplete(parser)

@@ -107,6 +107,21 @@ def test_without_a_command_it_says_what_to_try(capsys: pytest.CaptureFixture[str
     assert "exit status:" in told.out + told.err
 
 
+def test_the_help_loads_no_command() -> None:
+    program = """if True:
+        import sys
+        from nanotouch_app.main import main
+        try:
+            main(["--help"])
+        except SystemExit:
+            pass
+        heavy = ("nanotouch.images", "nanotouch.curves", "nanotouch.touch", "nanotouch.scene", "nanotouch_app.data")
+        sys.exit([name for name in sys.modules if name.startswith(heavy)])
+    """
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, "[]\n")  # sys.exit of a list prints it
+
+
 def test_python_m_nanotouch_is_the_command() -> None:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     command = [sys.executable, "-m", "nanotouch", "--version"]

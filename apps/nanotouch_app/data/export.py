@@ -29,7 +29,6 @@ def add_parser(subparsers: Any) -> None:
     """Add ``export`` to the command's sub-commands."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "export",
-        help="a recording, curves, an image or a map in formats that others open",
         description="Write a recording as CSV or HDF5; curves as CSV, or as afmformats' HDF5 or text; an image or a "
         "map.nc as .gwy with all its channels; an image as .gsf.",
     )

@@ -24,7 +24,7 @@ FILES = ("fit.json", "fit.png", "stability.png", "ruptures.csv")
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser = subparsers.add_parser("fit", help="fit a contact model to a measured force curve", description=__doc__)
+    parser = subparsers.add_parser("fit", description=__doc__)
     parser.add_argument(
         "curve",
         nargs="+",

@@ -31,7 +31,6 @@ def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "image",
-        help="level, repair and measure an AFM image",
         description=__doc__,
     )
     what = parser.add_argument_group("what is read")

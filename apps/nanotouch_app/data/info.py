@@ -25,7 +25,6 @@ def add_parser(subparsers: Any) -> None:
     """Add ``info`` to the command's sub-commands."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "info",
-        help="what a file holds: channels, size, units; segments, points, spring constant",
         description="Say what an AFM image, a force curve file or a recording holds.",
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="an AFM image, a force curve file or a recording")

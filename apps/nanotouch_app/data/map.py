@@ -26,7 +26,7 @@ SHOWN = ("effective_modulus", "youngs_modulus", "work_of_adhesion", "pull_off_fo
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser = subparsers.add_parser("map", help="fit every curve of a force map", description=__doc__)
+    parser = subparsers.add_parser("map", description=__doc__)
     parser.add_argument("file", metavar="FILE", help="force map (JPK .jpk-force-map, .jpk-qi-data, NanoScope, ...)")
     fit.add_knowledge(parser)
     parser.add_argument("--sidecar", metavar="FILE", help="TOML file: exclusions, contact points and baselines by hand")

@@ -19,7 +19,6 @@ def add_parser(subparsers: Any) -> None:
     """Add ``recalibrate`` to the command's sub-commands."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "recalibrate",
-        help="sensitivities of many files by a lever of known stiffness (SNAP)",
         description="Correct the deflection sensitivity of each file so that the spring constant it states, from "
         "thermal noise, becomes that of the lever. Writes a table for --calibration of fit, map and report.",
     )

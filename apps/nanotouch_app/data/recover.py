@@ -15,9 +15,7 @@ from nanotouch_app.common import output
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "recover", help="finish what a killed process left of a recording", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("recover", description=__doc__)
     parser.add_argument("file", type=Path, metavar="FILE", help="recording.mcap.NUMBER.part, or a damaged recording")
     parser.add_argument("--out", type=Path, metavar="FILE.mcap", help="a new file (default: FILE without .NUMBER.part)")
 

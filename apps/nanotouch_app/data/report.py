@@ -20,9 +20,7 @@ JOURNAL = "results.csv.journal"
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser = subparsers.add_parser(
-        "report", help="one page about folders of force curves: results, rejects, Methods", description=__doc__
-    )
+    parser = subparsers.add_parser("report", description=__doc__)
     parser.add_argument(
         "folder", nargs="+", metavar="FOLDER", help="force curves; folders, and folders in them, are groups"
     )

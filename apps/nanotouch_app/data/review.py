@@ -27,9 +27,7 @@ REASON = "rejected by hand"
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser = subparsers.add_parser(
-        "review", help="force curves one by one: keep, reject, contact point and baseline by hand", description=__doc__
-    )
+    parser = subparsers.add_parser("review", description=__doc__)
     parser.add_argument("curve", nargs="+", metavar="FILE", help="force curves, folders of them, or patterns")
     parser.add_argument("--sidecar", metavar="FILE", required=True, help="TOML file of what is decided; it may exist")
     parser.add_argument("--show", action="store_true", help="a window in place of the terminal; needs a display")

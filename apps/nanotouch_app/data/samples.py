@@ -45,9 +45,7 @@ axes = 1
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "samples", help="write an image, a force curve, a map and a scene to try", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("samples", description=__doc__)
     parser.add_argument("--out", metavar="DIR", default=".", help="folder for the files (default: here)")
     output.add_overwrite(parser)
 

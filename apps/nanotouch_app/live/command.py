@@ -43,7 +43,6 @@ def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "live",
-        help="touch with your own hand, in a window",
         description=__doc__,
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -32,7 +32,6 @@ def add_parser(subparsers: Any) -> None:
     """Add ``doctor`` to the command's sub-commands."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "doctor",
-        help="what is installed and works here, and what to install for the rest",
         description="Say what is installed and works here, and what to install for the rest.",
     )
     parser.set_defaults(run=run)

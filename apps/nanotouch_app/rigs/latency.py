@@ -22,9 +22,7 @@ SHARE_OF_PERIOD = 0.2
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "latency", help="how late this machine wakes a real-time loop up", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("latency", description=__doc__)
     add_options(parser)
     parser.add_argument("--out", type=Path, metavar="FILE.png", help="also draw the histogram")
     output.add_overwrite(parser)

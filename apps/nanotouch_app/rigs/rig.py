@@ -23,9 +23,7 @@ from nanotouch_app.rigs import calibrate, latency
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "rig", help="check a rig file, probe its machine, calibrate it, allow its code", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("rig", description=__doc__)
     jobs = parser.add_subparsers(dest="job", required=True, metavar="JOB")
     for job, words in (
         ("check", "read the file: everything must be there and fit its chips; no device is touched"),

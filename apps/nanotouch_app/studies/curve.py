@@ -24,9 +24,7 @@ FILES = ("curve.csv", "curve.png")
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "curve", help="compute a force-distance curve", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("curve", description=__doc__)
     parser.add_argument(
         "--scene", metavar="SCENE", help=scenes.HELP.format(what="the scene") + " (default: silicon in humid air)"
     )

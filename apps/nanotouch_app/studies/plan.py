@@ -32,7 +32,6 @@ def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "plan",
-        help="say what has to be computed for a scene, and why",
         description=__doc__,
         epilog="Exit status 2: the description is wrong, or the demand cannot be kept; the sentence says what can.",
     )

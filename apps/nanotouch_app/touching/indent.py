@@ -26,9 +26,7 @@ SIGMAS = 5.0  # of the lever's noise, that a load has to exceed
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "indent", help="indent a sample that yields, and draw the dent", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("indent", description=__doc__)
     parser.add_argument("load", metavar="LOAD", help="the largest, as 100nN")
     parser.add_argument("--scene", metavar="SCENE", help="TOML file with scene and rig, or a preset; adhesion and what "
                         "acts before contact are left out (default: a diamond tip of 20 nm on gold)")  # fmt: skip

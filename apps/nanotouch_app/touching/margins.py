@@ -37,9 +37,7 @@ CLEARANCE = 0.1e-6
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "margins", help="how far a loop is from its stability limit", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("margins", description=__doc__)
     parser.add_argument("scene", nargs="?", metavar="SCENE", help=scenes.HELP.format(what="scene, rig and gains")
                         + "; or the recording.mcap of a session (default: the paper's)")  # fmt: skip
     loop.add_options(parser)

@@ -25,9 +25,7 @@ FILES = ("push.csv", "push.json", "push.png")
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "push", help="push a particle to a place, under drift and noise", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("push", description=__doc__)
     parser.add_argument("--to", default="5um,0um", metavar="X,Y", help="from where it lies (default: %(default)s)")
     parser.add_argument("--radius", default="500nm", metavar="LENGTH",
                         help="of the particle, polystyrene on glass, 50nm .. 20um (default: %(default)s)")  # fmt: skip

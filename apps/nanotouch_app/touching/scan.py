@@ -35,9 +35,7 @@ LEAST, MOST = 4, 8192  # pixels and lines of an image
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "scan", help="image a surface on the simulated rig", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("scan", description=__doc__)
     parser.add_argument("what", nargs="?", metavar="IMAGE|SURFACE|PRESET", help="AFM image; built-in surface: "
                         f"{', '.join(surfaces.BUILT_IN)}; or a preset, over its surface (default: dots)")  # fmt: skip
     properties.add_reading(parser.add_argument_group("how IMAGE is read"))

@@ -36,7 +36,6 @@ def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "touch",
-        help="touch a surface on the simulated rig",
         description=__doc__,
     )
     where = parser.add_argument_group("what is touched, and where")

@@ -20,9 +20,7 @@ FIGURES = (5, 6, 9, 10, 11, 16, 17, 18, 19)
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "reproduce", help="compute the paper's figures and judge its statements", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("reproduce", description=__doc__)
     parser.add_argument(
         "--figure",
         nargs="+",

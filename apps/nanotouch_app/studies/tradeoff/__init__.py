@@ -24,9 +24,7 @@ FILES = (
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "tradeoff", help="measure speed and accuracy of every contact model and tier", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("tradeoff", description=__doc__)
     output.add_options(parser)
     parser.add_argument("--quick", action="store_true", help="few lambdas, few loads, rough timings: seconds")
     parser.add_argument("--doc", type=Path, metavar="FILE.md", help="also write the page on accuracy")

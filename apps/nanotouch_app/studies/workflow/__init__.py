@@ -23,9 +23,7 @@ FILES = ("scan.gwy", "touch.mcap", "push.csv", "predicted.gwy", "again.gwy", "wo
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "workflow", help="scan, touch, push, scan again: the paper's work as one film", description=__doc__
-    )
+    parser: argparse.ArgumentParser = subparsers.add_parser("workflow", description=__doc__)
     parser.add_argument(
         "--pixels", type=int, default=96, metavar="N", help="of a line, and lines (default: %(default)s)"
     )
