@@ -177,6 +177,60 @@ def test_what_does_not_go_together_is_refused(changes: dict, words: str) -> None
         fit.fit_curve(curve, model, **(HERE | changes))
 
 
+# Closed forms: E J = sin(pi beta)/(pi beta) of a power law.
+def test_a_pause_shows_relaxation_and_creep() -> None:
+    curve = with_pause(lambda t: 2e3 * t**-0.3, 0.3)
+    found = fit.fit_curve(curve, "ting_power", **HERE)
+    (pause,) = fit.pauses(curve, found)
+    assert pause.kind == "relaxation"
+    np.testing.assert_allclose(pause.modulus, 2e3 * pause.time**-0.3, rtol=1e-4)
+    np.testing.assert_allclose(pause.modulus * pause.creep, np.sin(0.3 * np.pi) / (0.3 * np.pi), rtol=1e-4)
+    assert np.all((pause.modulus_sigma > 0.0) & (pause.creep_sigma > 0.0))
+    with pytest.raises(InvalidValue, match="knows no time"):
+        fit.pauses(curve, fit.fit_curve(curve, "hertz", radius=RADIUS))
+
+
+def test_sigma_of_relaxation_follows_from_the_covariance() -> None:
+    curve = curve_of(Sample(2e3, 0.2), noise=1e-11, seed=8)
+    found = fit.fit_curve(curve, "ting_power", **(HERE | {"uncertainties": fit.Uncertainties(radius=0.02)}))
+    value, sigma = fit.relaxation(found, [1.0, 0.01])
+    assert value[0] == pytest.approx(found.values["youngs_modulus"], rel=1e-12)
+    assert sigma[0] == pytest.approx(found.sigma["youngs_modulus"], rel=1e-3)
+    places = [found.free.index(name) for name in ("effective_modulus", "exponent")]
+    slope = np.array([1.0 / found.values["effective_modulus"], -np.log(0.01)])
+    relative = np.sqrt(slope @ found.covariance[np.ix_(places, places)] @ slope)
+    assert sigma[1] / value[1] == pytest.approx(relative, rel=1e-3)
+
+
+# tests/heavy/fit_ting.py counts them over 2 000.
+def test_an_elastic_law_says_that_the_sample_relaxes() -> None:
+    known = {"radius": RADIUS, "poisson_ratio": POISSON}
+    for seed, exponent in enumerate((0.1, 0.2, 0.35, 0.5, 0.1, 0.5)):
+        sample = Sample(1e3, exponent, (1e-6, 2e-5)[seed % 2]).with_peak(4e-9)
+        curve = curve_of(sample, noise=1.5e-11, drag=2e-6, seed=seed)
+        found = fit.fit_curve(curve, ("hertz", "auto")[seed % 2], **known)
+        assert found.status != "ok"
+        assert "relaxes" in found.reason
+        assert found.reason.endswith("fit ting_power")
+        assert not any("calibration" in note for note in found.notes)
+        assert not found.bounds
+
+
+def test_an_elastic_curve_is_not_said_to_relax() -> None:
+    for seed in range(6):
+        sample = Sample(1e3, 0.0, (1e-6, 2e-5)[seed % 2]).with_peak(3e-9)
+        curve = curve_of(sample, noise=1.5e-11, drag=4e-6, seed=seed)
+        found = fit.fit_curve(curve, "hertz", radius=RADIUS)
+        assert (found.status, found.reason) == ("ok", "")
+
+
+def test_another_tip_is_no_relaxation() -> None:
+    cone = Sample(1e3, 0.0, power=2.0, scale=2 / np.pi * np.tan(0.6)).with_peak(2e-8)
+    found = fit.fit_curve(curve_of(cone, noise=5e-12), "hertz", radius=RADIUS, uncertainties=EXACT)
+    assert "relaxes" not in found.reason
+    assert any("no relaxation of the sample" in note for note in found.notes)
+
+
 def test_other_models_know_no_time() -> None:
     found = fit.fit_curve(curve_of(Sample(2e3, 0.0), noise=1e-11), "hertz", radius=RADIUS)
     with pytest.raises(InvalidValue, match="knows no time"):

@@ -19,7 +19,7 @@ from nanotouch_app.common import output, scenes
 from nanotouch_app.common.quantity import number, parse_quantity, whole_number
 from nanotouch_app.data import fit_many
 
-FILES = ("fit.json", "fit.png", "stability.png", "ruptures.csv")
+FILES = ("fit.json", "fit.png", "stability.png", "ruptures.csv", "pauses.csv")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -105,6 +105,8 @@ def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     if args.stability and args.window is not None:
         raise InvalidValue("--stability fits ever deeper windows of its own: leave out --window")
+    if args.model in fitting.OVER_TIME and (args.compare or args.stability):
+        raise InvalidValue(f"--model {args.model} is fitted to the whole curve: leave out --compare and --stability")
     if fit_many.is_meant(args):
         if args.compare:
             raise InvalidValue("--compare looks at one curve: name one file")
@@ -119,8 +121,6 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValue(f"--index {args.index}: {file} holds the curves 0 .. {len(found) - 1}")
     curve = found[args.index]
     known = knowledge(args)
-    if args.model in fitting.OVER_TIME and (args.compare or args.stability):
-        raise InvalidValue(f"--model {args.model} is fitted to the whole curve: leave out --compare and --stability")
     with output.busy("fitting"):
         result = awaited(lambda: fitting.fit_curve(curve, args.model, branch=args.branch, **known))
     with output.folder(args, FILES) as out:
@@ -129,6 +129,8 @@ def run(args: argparse.Namespace) -> int:
         fitting.draw(curve, result, save=out / "fit.png")
         if result.report.ruptures:
             write_ruptures(out / "ruptures.csv", curves.chains(curve, result.report))
+        if result.time is not None:
+            write_pauses(out / "pauses.csv", fitting.pauses(curve, result))
         if args.stability:
             fitting.stability(curve, result.model, branch=result.branch, **known).draw(save=out / "stability.png")
         if len(found) > 1:
@@ -180,6 +182,19 @@ def write_ruptures(path: Path, found: tuple[curves.Chain, ...]) -> None:
             lengths = (chain.contour_length, chain.contour_length_sigma,
                        chain.segment_length, chain.segment_length_sigma)  # fmt: skip
             table.writerow([*chain.rupture, *("" if math.isnan(length) else length for length in lengths)])
+
+
+def write_pauses(path: Path, found: tuple[fitting.Pause, ...]) -> None:
+    """A row for each mean of each pause; no file without pauses."""
+    if not found:
+        return
+    columns = ("pause", "kind", "time [s]", "E [Pa]", "E sigma [Pa]", "J [1/Pa]", "J sigma [1/Pa]")
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(columns)
+        for number, pause in enumerate(found):
+            for row in zip(*pause[1:], strict=True):
+                table.writerow([number, pause.kind, *row])
 
 
 def as_json(result: nt.fit.FitResult) -> dict[str, Any]:

@@ -29,7 +29,10 @@ QUANTITIES = {
     "modulus [Pa]": ("modulus", "Pa"),
     "pull_off_force [N]": ("pull-off force", "N"),
     "separation_work [J]": ("work of separation", "J"),
+    "exponent": ("exponent beta", ""),
+    "relaxation_time [s]": ("relaxation time", "s"),
 }
+_OF_SOME = ("exponent", "relaxation_time [s]")  # models: shown where a curve has it
 _FEWEST = 8  # values, to judge a distribution by
 _CRITICAL = 0.752  # of Anderson and Darling's A^2 at 5 %, mean and variance estimated (Stephens 1986)
 
@@ -129,13 +132,15 @@ def spreads(rows: Iterable[Mapping[str, Any]]) -> list[Spread]:
     for row in rows:
         if row["status"] not in ("failed", "excluded"):
             kept.setdefault(row.get("group", ""), []).append(row)
-    return [_spread(group, quantity, members) for group, members in kept.items() for quantity in QUANTITIES]
+    there = {key for members in kept.values() for row in members for key in _OF_SOME if row.get(key, "") != ""}
+    asked = [quantity for quantity in QUANTITIES if quantity not in _OF_SOME or quantity in there]
+    return [_spread(group, quantity, members) for group, members in kept.items() for quantity in asked]
 
 
 def _spread(group: str, quantity: str, rows: Sequence[Mapping[str, Any]]) -> Spread:
     values = np.array([_value(row, quantity) for row in rows], dtype=np.float64)
-    good = values[np.isfinite(values) & (values > 0.0)]
-    logs = np.log(good)
+    good = values[np.isfinite(values) & ((values > 0.0) | ((values == 0.0) & (quantity == "exponent")))]
+    logs = np.log(good[good > 0.0])
     nothing = (np.nan,) * len(PERCENTILES)
     return Spread(
         group=group,
@@ -144,16 +149,16 @@ def _spread(group: str, quantity: str, rows: Sequence[Mapping[str, Any]]) -> Spr
         values=good,
         without=values.size - good.size,
         percentiles=tuple(float(v) for v in np.percentile(good, PERCENTILES)) if good.size else nothing,
-        geometric_mean=float(np.exp(logs.mean())) if good.size else np.nan,
-        geometric_deviation=float(np.exp(logs.std(ddof=1))) if good.size > 1 else np.nan,
-        log_normal=bool(anderson_darling(logs) < _CRITICAL) if good.size >= _FEWEST else None,
+        geometric_mean=float(np.exp(logs.mean())) if logs.size else np.nan,
+        geometric_deviation=float(np.exp(logs.std(ddof=1))) if logs.size > 1 else np.nan,
+        log_normal=bool(anderson_darling(logs) < _CRITICAL) if logs.size >= _FEWEST else None,
     )
 
 
 def _value(row: Mapping[str, Any], quantity: str) -> float:
     """NaN where a curve does not determine it: a misfit's modulus is none, nor is the force of what is no curve."""
     if float(row.get("rating") or 0.0) < REJECTED or (
-        quantity.startswith("modulus") and row["status"] in ("misfit", "not converged")
+        quantity.startswith(("modulus", *_OF_SOME)) and row["status"] in ("misfit", "not converged")
     ):
         return np.nan
     value = row.get(quantity, np.nan)

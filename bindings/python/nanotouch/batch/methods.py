@@ -29,6 +29,7 @@ def methods(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any], read
         "interference where there is strong evidence of one. Both branches were judged together: only what lies beyond "
         "the last rupture of the retraction counts as free.",
         _laws(fitted, settings),
+        _over_time(fitted),
         modulus_meant(settings),
         "The force was fitted over the position of the cantilever's base, with the cantilever's bending in the model. "
         "Sensitivity, level and tilt of the baseline entered as data of their own uncertainty.",
@@ -56,11 +57,21 @@ def _laws(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any]) -> str
     used = Counter((row["model"], row["branch"]) for row in rows)
     if not used:
         return ""
-    said = [f"{title_of(model)} on the {'approach' if branch == 'approach' else 'retraction'} ({count})"
+    named = {"retract": "retraction"}
+    said = [f"{title_of(model)} on the {named.get(branch, branch)} ({count})"
             for (model, branch), count in used.most_common()]  # fmt: skip
     how = "chosen by what each curve shows" if settings.get("model") == "auto" else "chosen beforehand"
     tip = _tip(rows, settings)
     return f"Laws of contact, {how}: {', '.join(said)}.{tip}"
+
+
+def _over_time(rows: Sequence[Mapping[str, Any]]) -> str:
+    if not any(row["branch"] == "whole curve" for row in rows):
+        return ""
+    return (
+        "Approach, pauses and retraction of a curve were fitted at once over time, the contact growing by Lee and "
+        "Radok's (1960) and shrinking by Ting's (1966) solution; a retraction that adheres was left out."
+    )
 
 
 def _tip(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any]) -> str:

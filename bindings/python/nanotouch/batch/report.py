@@ -107,7 +107,7 @@ def _histograms(spreads: Sequence[Spread]) -> list[str]:
 def _histogram(quantity: str, spreads: Sequence[Spread]) -> Any:
     name, unit = QUANTITIES[quantity]
     every = np.concatenate([found.values for found in spreads])
-    shown, scale = engineering(unit, np.array([np.median(every)]))
+    shown, scale = engineering(unit, np.array([np.median(every)])) if unit else ("", 1.0)
     low, high = float(every.min()), float(every.max())
     wide = high > _DECADE * low
     if low == high:
@@ -123,7 +123,7 @@ def _histogram(quantity: str, spreads: Sequence[Spread]) -> Any:
             _draw_log_normal(panel, found, edges, scale, colour)
     if wide:
         panel.set_xscale("log")
-    panel.set_xlabel(f"{name} ({shown})")
+    panel.set_xlabel(f"{name} ({shown})" if shown else name)
     panel.set_ylabel("curves")
     panel.legend(fontsize=8)
     return figure
@@ -150,18 +150,19 @@ def _rejected(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _curves(rows: Sequence[Mapping[str, Any]]) -> str:
     headers = ("curve", "group", "status", "law", "rating", "modulus", "pull-off", "w", "work of separation")
+    over_time = any(row.get("relaxation", "") for row in rows)
     kept = [row for row in rows if row["status"] not in ("failed", "excluded")]
     cells = [
         (
             _named(row), row.get("group", ""), row["status"], row["model"], _shown(row, "rating", "", 1),
             _modulus(row), _force(row),
             _range(row, "work_of_adhesion low [J/m^2]", "work_of_adhesion high [J/m^2]", "J/m^2"),
-            _shown(row, "separation_work [J]", "J"),
+            _shown(row, "separation_work [J]", "J"), *([row.get("relaxation", "")] if over_time else []),
         )
         for row in kept[:_LISTED]
     ]  # fmt: skip
     more = f"<p>and {len(kept) - _LISTED} more in the table</p>" if len(kept) > _LISTED else ""
-    return table(f"{len(kept)} fitted", headers, cells) + more
+    return table(f"{len(kept)} fitted", (*headers, "relaxation") if over_time else headers, cells) + more
 
 
 def _named(row: Mapping[str, Any]) -> str:

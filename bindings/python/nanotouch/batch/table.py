@@ -19,6 +19,8 @@ SHORT = (
     "modulus high [Pa]", "pull_off_force [N]", "pull_off_force sigma [N]", "work_of_adhesion low [J/m^2]",
     "work_of_adhesion high [J/m^2]", "separation_work [J]",
 )  # fmt: skip
+#: besides, where a model over time was fitted
+OVER_TIME = ("exponent", "exponent low", "exponent high", "relaxation_time [s]", "relaxation_time sigma [s]")
 _PLAIN = {
     "residual_rms": "N", "misfit": "", "contact_radius": "m", "contact_stiffness": "N/m", "radius": "m",
     "spring_constant": "N/m",
@@ -43,6 +45,9 @@ def row_of(file: Path, index: int, result: FitResult, decision: Decision) -> Row
         row[_headed(f"{name} sigma calibration", unit)] = result.sigma_calibration[name]
         if name in result.identifiable:
             row[f"{name} determined"] = int(result.identifiable[name])
+    if "exponent" in result.interval:
+        row["exponent low"], row["exponent high"] = result.interval["exponent"]
+    row["relaxation"] = dict(result.answer.lines).get("relaxation", "")
     for name, unit in _READ_OFF.items():
         row[_headed(f"measured {name}", unit)] = getattr(result.report, name)
         row[_headed(f"measured {name} sigma", unit)] = result.report.sigma[name]
@@ -62,7 +67,8 @@ def by_hand(decision: Decision) -> dict[str, Any]:
 
 def write(path: Path, rows: list[Row], *, long: bool) -> None:
     """As CSV, whole or not at all."""
-    names = list(dict.fromkeys(key for row in rows for key in row)) if long else list(SHORT)
+    every = dict.fromkeys(key for row in rows for key in row)
+    names = list(every) if long else [*SHORT, *(name for name in OVER_TIME if name in every)]
     # file names may hold bytes that are no UTF-8
     with replacing(path) as part, part.open("w", encoding="utf-8", errors="backslashreplace", newline="") as stream:
         writer = csv.DictWriter(stream, names, restval="", extrasaction="ignore")

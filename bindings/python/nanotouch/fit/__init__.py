@@ -16,6 +16,7 @@ from .choice import PARABOLOIDS, Candidate, Choice, choose_model
 from .fitting import TipLike, fit_curve
 from .models import Model, Parameter, add_named, add_over_time, models, register
 from .over_time import OVER_TIME
+from .pauses import Pause, creep, pauses, relaxation
 from .picture import draw
 from .result import FitResult
 from .sokolov import SOKOLOV, SeriesBias, series_bias
@@ -34,17 +35,21 @@ __all__ = [
     "FitResult",
     "Model",
     "Parameter",
+    "Pause",
     "PointsFit",
     "SeriesBias",
     "Stability",
     "TipLike",
     "Uncertainties",
     "choose_model",
+    "creep",
     "draw",
     "fit_curve",
     "fit_points",
     "models",
+    "pauses",
     "register",
+    "relaxation",
     "series_bias",
     "stability",
 ]

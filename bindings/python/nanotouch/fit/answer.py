@@ -94,6 +94,7 @@ def answer_of(result: FitResult) -> Answer:
         lines.append(("adhesion", "force and work of separation alone: no work per area follows from what goes on "
                                   "holding"))  # fmt: skip
     modulus, said = _modulus(result)
+    said += _relaxation(result)
     if result.choice:
         lines.append(("law", result.choice))
     return Answer(found.kind, (force, low, high), work, product, separation, modulus, (*lines, *said), sigma)
@@ -177,6 +178,22 @@ def _separation(result: FitResult) -> tuple[float, float]:
     report, known = result.report, result.uncertainties
     work, sigma = report.adhesion_work, report.sigma["adhesion_work"]
     return work, float(np.hypot(sigma, abs(work) * known.force))
+
+
+def _relaxation(result: FitResult) -> list[tuple[str, str]]:
+    """How the sample relaxes, of models over time."""
+    if result.time is None:
+        return []
+    if "exponent" in result.values:
+        low, high = result.interval["exponent"]
+        text = f"E goes as t^-beta, at 1 s as above; beta {result.show('exponent')}, 95 % from {low:.4f} to {high:.4f}"
+        return [("relaxation", text)]
+    names = [name for name in result.values if name.startswith("relaxation_time")]
+    arms = [
+        f"{result.show(name.replace('relaxation_time', 'arm_modulus'))} more within {result.show(name)}"
+        for name in names
+    ]
+    return [("relaxation", f"E at rest as above; {', '.join(arms)}")]
 
 
 def _modulus(result: FitResult) -> tuple[tuple[float, float, float], list[tuple[str, str]]]:

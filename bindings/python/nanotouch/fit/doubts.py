@@ -16,6 +16,7 @@ from .solving import Setup, Solution
 from .uncertainties import Uncertainties
 
 _THICK = 2.0  # contact radius over thickness up to which the laws of layers hold
+_MISFITS = {"calibration", "misfit", "uneven", "wrong_model"}  # what a sample that relaxes shows to an elastic law
 _OF_THE_SAMPLE = 5  # places of the model's own parameters and the contact point; then the force offset
 
 
@@ -40,7 +41,10 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
     }
     flagged = {name for name, bit in extension.flags.items() if solution.made.flags & bit}
     notes, reason = [], ""
-    if "calibration" in flagged:
+    relaxes = setup.time is not None and setup.time.relaxes
+    if setup.time is not None and (relaxes or flagged & _MISFITS):
+        notes.append(setup.time.note)
+    if "calibration" in flagged and not relaxes:
         notes.append(_calibration(solution, uncertainties))
         reason = "the curve disagrees with its calibration"
     stiffness, stated = found["contact_stiffness"], options.spring_constant
@@ -64,20 +68,26 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
             + ("this model does not describe the curve" if "misfit" in flagged else "the model is near")
             + ", and sigma covers only part of that"
         )
-    if "uneven" in flagged:
-        shallow, deep = (with_sigma(modulus, 0.0, "Pa") for modulus in solution.made.half_modulus)
-        notes.append(
-            f"the shallow half of the contact asks for E* = {shallow}, the deep half for {deep}, each with a contact "
-            "point of its own: a slip, a bow of the scanner or another law; sigma covers half of the difference"
-            + ("" if identifiable.get("effective_modulus", True) else ", and so E* is not determined")
-        )
+    if "uneven" in flagged and not relaxes:
+        notes.append(_uneven(solution, identifiable.get("effective_modulus", True)))
     if "wrong_model" in flagged:
         reason = "the model does not describe the curve"
         notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")
     if "not_converged" in flagged:
         lost = "" if any(identifiable.values()) else ": other values fit as well, so that none of these is a result"
         notes.append(f"the fit stopped before it converged{lost}")
+    if setup.time is not None and relaxes:
+        reason, identifiable = setup.time.reason, dict.fromkeys(identifiable, False)
     return Doubts(identifiable, notes, reason)
+
+
+def _uneven(solution: Solution, determined: bool) -> str:
+    shallow, deep = (with_sigma(modulus, 0.0, "Pa") for modulus in solution.made.half_modulus)
+    return (
+        f"the shallow half of the contact asks for E* = {shallow}, the deep half for {deep}, each with a contact "
+        "point of its own: a slip, a bow of the scanner or another law; sigma covers half of the difference"
+        + ("" if determined else ", and so E* is not determined")
+    )
 
 
 def _wide(setup: Setup, solution: Solution) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -16,6 +17,7 @@ from .first import AUTO, first_choice
 from .free_part import doubt_free_part
 from .models import Model, extension, find, is_sharp, layer_of
 from .points import Branch, Window, points_of
+from .relaxing import relaxing
 from .reporting import Sample, Tip, make_result
 from .result import FitResult
 from .show import with_sigma
@@ -153,6 +155,7 @@ def fit_curve(
         loss_scale=loss_scale or max(_LOSS_SCALE * report.noise, 1e-18),
     )
     _check_names(setup, chosen.options(compiled, setup.radius).parameters)
+    setup = replace(setup, time=relaxing(curve, report, setup))
     assumptions += uncertainties.assumptions(sharp=is_sharp(chosen.name), layer=chosen.is_layer)
     solution = solve(compiled, setup, points, uncertainties)
     if window is not None and window_of == "indentation":

@@ -6,13 +6,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .models import Floats, Model
 from .points import Points
 from .uncertainties import Uncertainties
+
+
+class AboutTime(NamedTuple):
+    """What both branches of a curve say about time."""
+
+    relaxes: bool
+    """the sample: no elastic law holds for it"""
+    note: str
+    reason: str
+    """in a few words, where it relaxes"""
 
 
 @dataclass(frozen=True)
@@ -29,6 +39,7 @@ class Setup:
     fit_offset: bool = False
     loss: int = 0
     loss_scale: float = 1e-9
+    time: AboutTime | None = None
 
     def options(self, extension: ModuleType) -> Any:
         """For the C library."""

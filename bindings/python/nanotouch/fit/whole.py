@@ -80,10 +80,10 @@ def fit_whole(
         covariance=_signed(spread.covariance, found.free),
         free=found.free,
         identifiable=dict.fromkeys(identifiable, False) if reason else identifiable,
-        z=-track.position,
-        force=track.force,
-        fitted=found.fitted,
-        indentation=found.indentation,
+        z=-track.position[track.fitted],
+        force=track.force[track.fitted],
+        fitted=found.fitted[track.fitted],
+        indentation=found.indentation[track.fitted],
         **_not_of_this_law(),
         measured_pull_off_force=report.pull_off_force,
         measured_snap_in_force=report.snap_in_force,
@@ -106,7 +106,7 @@ def fit_whole(
         radius_given=tip.radius_given,
         assumed_tip=tip.assumed,
         units={name: _unit(law, name) for name in spread.values},
-        time=track.time,
+        time=track.time[track.fitted],
     )
 
 
