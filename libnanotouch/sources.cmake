@@ -254,6 +254,31 @@ set(nanotouch_sources_session
     session/wall_pace.c
     session/well.c)
 set(nanotouch_sources_testing testing/testing.c)
+set(nanotouch_sources_host
+    host/changes.c
+    host/compose.c
+    host/energy.c
+    host/hand.c
+    host/host.c
+    host/law.c
+    host/left.c
+    host/lesson.c
+    host/lines.c
+    host/messages.c
+    host/operator.c
+    host/presets.c
+    host/refusals.c
+    host/sliders.c
+    host/staircase.c
+    host/task_dent.c
+    host/task_force.c
+    host/task_push.c
+    host/task_push_solve.c
+    host/task_stiffer.c
+    host/task_trace.c
+    host/tasks.c
+    host/text.c
+    host/trainer.c)
 set(nanotouch_sources_fit
     fit/batch.cpp
     fit/contact_model.cpp

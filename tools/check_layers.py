@@ -38,6 +38,7 @@ USES = {
     "hal/sim": "core forces contact friction manipulation plasticity surface scene dynamics scan hal",
     "hal/linux": "core hal hal/chips",
     "session": "core forces contact friction manipulation plasticity surface scene dynamics scan control hal hal/sim",
+    "host": "core forces contact friction manipulation plasticity surface scene control hal hal/sim session",
     "fit": "core forces contact contact/maugis curves rheology fit/models",
     "fit/models": "core contact contact/maugis curves fit",
     "testing": "core control session",
@@ -71,7 +72,7 @@ SYSTEM_HEADERS = {
 # Of hal, what is outside the portable core.
 HOSTED = "clock load loop mailbox mailbox_half shared_memory shared_memory_windows timed_loop"
 HOSTED_FILES = {f"hal/{name}.c" for name in HOSTED.split()}
-PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
+PRINTING_FILES = {"core/status.c", "host/text.c"}  # may use snprintf, into the caller's buffer
 
 # Added as a file, without a line in sources.cmake.
 FOUND_BY_CMAKE = "fit/models/"

@@ -120,23 +120,6 @@ PAGE_API(page_problem) const char *page_problem(int status)
     return nt_status_message((nt_status)status);
 }
 
-/* The settings of the rig as it is, scaled for a slave's path [m] and an attraction [N] (nt_scaling_heuristic), no
- * harder than the scene's largest load. */
-PAGE_API(page_usual_settings) void page_usual_settings(double slave_path, double attraction)
-{
-    world.settings = nt_settings_defaults(&world.rig);
-    const nt_scaling scaling = nt_scaling_heuristic(&world.rig, slave_path, attraction);
-    world.settings.gains.alpha_p = scaling.alpha_p;
-    world.settings.gains.alpha_f = scaling.alpha_f;
-    nt_settings_keep_to(&world.settings, world.scene.range.maximum_load);
-}
-
-/* R1's margin of the paper's kind of loop at a stiffness [N/m]. */
-PAGE_API(page_loop_margin) double page_loop_margin(double contact_stiffness)
-{
-    return nt_margins_compute(&world.rig, &world.settings.gains, contact_stiffness).margin;
-}
-
 /* --- the plan, and what is drawn of it --- */
 
 PAGE_API(page_plan) int page_plan(void)

@@ -71,8 +71,6 @@ void page_defaults(void);
 void page_accuracy(double relative);
 int page_check(int kind);
 const char *page_problem(int status);
-void page_usual_settings(double slave_path, double attraction);
-double page_loop_margin(double contact_stiffness);
 int page_plan(void);
 const char *page_fact_name(int number);
 double page_fact(int number);
@@ -93,33 +91,42 @@ void page_close(void);
 int page_run(int ticks);
 const page_update *page_update_of(void);
 void page_taken(void);
-int page_hold(double x, double y, double z, double duration);
 int page_push(double force, double x, double y, double duration);
 void page_stop(void);
 int page_arm(void);
-int page_change(int kind, int number, double value);
+void page_changed(void);
 int page_rewind(double duration);
-double page_own(int what);
-double page_margin_with(int number, double value);
 int page_properties(const double *youngs_modulus, const double *work_of_adhesion, int nx, int ny);
 void page_place(double x, double y, double found[4]);
 
 nt_session *page_the_session(void);
 
 /* page_particles.c */
-enum { PAGE_LAID = 8 }; /* numbers of each */
 int page_particles(const double *values, int count);
+int page_rod(const double *values, int count);
 const nt_particles *page_given_particles(void);
-int page_lay(int number, double x, double y);
-int page_laid(double found[PAGE_LAID * NT_PARTICLES]);
+const nt_rod *page_given_rod(void);
 
-/* page_dents.c */
-enum { PAGE_DENT = 8 }; /* numbers of each */
-int page_dents(double rows[PAGE_DENT * NT_DENTS]);
-int page_undent(void);
-double page_dent_depth(double load);
+/* page_host.c */
+int page_compose(const double ground[5]);
+double page_clearance(void);
+void page_host_lay(const char *const texts[4], const double size[2], int pushed);
+int page_host_open(void);
+void page_host_see(const nt_frame *frame);
+void page_host_follow(double elapsed);
+int page_host_ask(const char *what, const char *text, const double values[3]);
+void page_host_refuse(const char *why);
+const char *page_host_tell(void);
+const char *page_host_result(int begin);
+const char *page_host_wants(void);
+const char *page_host_reopens(void);
+double page_host_reopens_to(void);
+void page_host_state(double found[6]);
+const char *page_host_task(void);
+int page_host_solve(void);
 
 /* page_dented.c */
+enum { PAGE_DENT = 8 }; /* numbers of each dent */
 void page_dented_begin(double load);
 int page_dented_lay(const double *heights, int nx, int ny, double dx, double dy);
 void page_dented_take(const double *rows, int count);
@@ -128,13 +135,6 @@ double page_dented_fact(int what);
 int page_dented_curve(int part, double farthest, nt_view_point *rows, int count);
 void page_dented_section(double gap, const double *r, nt_view_profile *rows, int count, double found[3]);
 int page_dented_heights(double *heights);
-
-/* page_energy.c */
-void page_weigh(double spring, double zero, double alpha_p, double load);
-void page_weigh_anew(void);
-void page_weigh_let_go(void); /* the hand takes hold where the tip is next */
-void page_weigh_tick(const nt_frame *frame);
-void page_energies(double found[4]);
 
 /* page_curve.c */
 int page_read_curve(const double *z, const double *force, int in_count, int out_count, double spring_constant);

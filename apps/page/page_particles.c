@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Particles of the page's session: what they are like, where they lie (page.h). */
-#include <string.h>
-
+ * Particles and the rod of the page's session: what they are like (page.h). */
 #include "page.h"
 
 static nt_particles made;
-static int are_given;
+static nt_rod rod;
+static int are_given, rod_is_given;
 
 /* For the next page_open: the values of nt_particle_fields, then those of nt_particles_fields; 0 of them: none. */
 PAGE_API(page_particles) int page_particles(const double *values, int count)
@@ -33,25 +32,25 @@ const nt_particles *page_given_particles(void)
     return are_given ? &made : NULL;
 }
 
-/* Lays one at rest at (x, y) [m]. */
-PAGE_API(page_lay) int page_lay(int number, double x, double y)
+/* The same of a rod: the values of nt_rod_fields; 0 of them: none. */
+PAGE_API(page_rod) int page_rod(const double *values, int count)
 {
+    int fields_count;
+    const nt_field *fields = nt_rod_fields(&fields_count);
     page_the_world()->problem = (nt_problem){0};
-    return (int)nt_session_lay(page_the_session(), number, (double[2]){x, y});
+    rod_is_given = 0;
+    if (count == 0)
+        return NT_OK;
+    if (count != fields_count)
+        return NT_E_ARGUMENT;
+    for (int i = 0; i < count; ++i)
+        nt_field_set(&fields[i], &rod, values[i]);
+    const nt_status status = nt_rod_check(&rod, &page_the_world()->problem);
+    rod_is_given = status == NT_OK;
+    return (int)status;
 }
 
-/* Of each that lies there: x, y, z of its middle [m], its force on the tip [N], touches, losses. How many; 0 without
- * any. */
-PAGE_API(page_laid) int page_laid(double found[PAGE_LAID * NT_PARTICLES])
+const nt_rod *page_given_rod(void)
 {
-    nt_session_particles laid;
-    if (nt_session_read_particles(page_the_session(), &laid) != NT_OK)
-        return 0;
-    for (int i = 0; i < laid.count; ++i, found += PAGE_LAID) {
-        memcpy(found, laid.position[i], sizeof laid.position[i]);
-        memcpy(found + 3, laid.force[i], sizeof laid.force[i]);
-        found[6] = laid.touches[i];
-        found[7] = laid.losses[i];
-    }
-    return laid.count;
+    return rod_is_given ? &rod : NULL;
 }

@@ -96,6 +96,7 @@ PAGE_API(page_open) int page_open(const double *heights, int nx, int ny, const p
     setup.minimum_margin = opening->margin;
     setup.ring_capacity = 0;
     setup.particles = page_given_particles();
+    setup.rod = page_given_rod();
     world->problem = (nt_problem){0};
     nt_session *session = NULL;
     nt_properties *of_places = malloc(sizeof *of_places);
@@ -112,7 +113,6 @@ PAGE_API(page_open) int page_open(const double *heights, int nx, int ny, const p
     keep_properties();
     free(page.of_places);
     page.of_places = of_places;
-    page_weigh_anew();
     page.touches = 0;
     clear_update();
     return NT_OK;
@@ -177,7 +177,7 @@ PAGE_API(page_run) int page_run(int ticks)
         if (status != NT_OK)
             return (int)status;
         page_sum_up(&page.update, &frame);
-        page_weigh_tick(&frame);
+        page_host_see(&frame);
         const int touches = frame.contact_radius > 0.0;
         if (touches != page.touches)
             page.update.events |= touches ? PAGE_SNAP : PAGE_TEAR;
@@ -205,14 +205,6 @@ PAGE_API(page_taken) void page_taken(void)
 
 /* --- the hand and what is asked --- */
 
-/* The hand holds the master at a place and goes there within a time [s]. */
-PAGE_API(page_hold) int page_hold(double x, double y, double z, double duration)
-{
-    const nt_input input = {.holds = 1, .master_position = {x, y, z}, .x = NAN, .y = NAN, .duration = duration};
-    page_the_world()->problem = (nt_problem){0};
-    return (int)nt_session_aim(page.session, &input, &page_the_world()->problem);
-}
-
 /* The hand pushes, as in the reference session. */
 PAGE_API(page_push) int page_push(double force, double x, double y, double duration)
 {
@@ -232,28 +224,13 @@ PAGE_API(page_arm) int page_arm(void)
     return (int)nt_session_arm(page.session, 1);
 }
 
-/* A field of scene or settings of the open session; scales among them. */
-PAGE_API(page_change) int page_change(int kind, int number, double value)
+/* It was changed: a snapshot belongs to the world that it was taken in. */
+PAGE_API(page_changed) void page_changed(void)
 {
     page_world *world = page_the_world();
-    world->problem = (nt_problem){0};
-    const char *name = (kind == PAGE_SCENE ? nt_scene_fields(NULL) : nt_settings_fields(NULL))[number].name;
-    nt_scaling scaling = {nt_session_setup_of(page.session)->settings.gains.alpha_p,
-                          nt_session_setup_of(page.session)->settings.gains.alpha_f};
-    nt_status status;
-    if (!strcmp(name, "gains.alpha_p") || !strcmp(name, "gains.alpha_f")) {
-        *(name[12] == 'p' ? &scaling.alpha_p : &scaling.alpha_f) = value;
-        status = nt_session_rescale(page.session, &scaling, &world->problem);
-    } else {
-        status = nt_session_change(page.session, kind == PAGE_SCENE ? NT_EVENT_SCENE : NT_EVENT_SETTING, name, value,
-                                   &world->problem);
-    }
-    if (status != NT_OK)
-        return (int)status;
-    forget(); /* a snapshot belongs to the world that it was taken in */
+    forget();
     world->scene = nt_session_setup_of(page.session)->scene;
     world->settings = nt_session_setup_of(page.session)->settings;
-    return NT_OK;
 }
 
 /* Back by a duration [s], to the nearest kept moment before that. */
@@ -276,54 +253,7 @@ PAGE_API(page_rewind) int page_rewind(double duration)
             page.kept[i] = NULL;
         }
     page.newest = best;
-    page_weigh_anew();
-    page_weigh_let_go();
     return page_run(1);
-}
-
-/* --- what the session says of itself --- */
-
-enum { OWN_MARGIN, OWN_FORCE, OWN_START, OWN_MASTER, OWN_ALPHA_P, OWN_BOUND, OWN_PULL, OWN_DEPTH };
-
-/* The least margin of those that count, with other settings: 1 is the limit. */
-static double margin_with(const nt_settings *settings)
-{
-    const nt_session_setup *setup = nt_session_setup_of(page.session);
-    const double stiffness = nt_session_plan(page.session)->maximum_stiffness;
-    nt_margins margins;
-    return nt_margins_judge(&setup->rig, settings, stiffness, setup->mode, &margins).margin;
-}
-
-/* The same with one field of the settings changed. */
-PAGE_API(page_margin_with) double page_margin_with(int number, double value)
-{
-    nt_settings settings = nt_session_setup_of(page.session)->settings;
-    nt_field_set(nt_settings_fields(NULL) + number, &settings, value);
-    return margin_with(&settings);
-}
-
-PAGE_API(page_own) double page_own(int what)
-{
-    switch (what) {
-    case OWN_MARGIN:
-        return margin_with(&nt_session_setup_of(page.session)->settings);
-    case OWN_FORCE:
-        return nt_session_guarantee(page.session).force;
-    case OWN_START:
-        return nt_session_start_height(page.session);
-    case OWN_MASTER:
-        return nt_session_master_start(page.session);
-    case OWN_ALPHA_P:
-        return nt_session_setup_of(page.session)->settings.gains.alpha_p;
-    case OWN_BOUND:
-        return nt_session_plan(page.session)->bound.force_error;
-    case OWN_PULL:
-        return nt_session_plan(page.session)->pull_off_force;
-    case OWN_DEPTH:
-        return nt_session_plan(page.session)->largest_indentation;
-    default:
-        return (double)NAN;
-    }
 }
 
 /* Height [m], effective radius [m], E_s [Pa] and w [J/m^2] at a place of what is touched; 0: not given there. */

@@ -11,7 +11,7 @@ import time
 from typing import Any
 
 import pytest
-from nanotouch_app.training.lesson import LESSON
+from nanotouch_app.live.board import TASKS
 
 aiohttp = pytest.importorskip("aiohttp", reason="pip install 'nanotouch[browser]'")
 from nanotouch_app.browser.desk import BrowserDesk  # noqa: E402
@@ -19,6 +19,7 @@ from nanotouch_app.browser.update import LAYOUT  # noqa: E402
 from nanotouch_app.live.host import Host  # noqa: E402
 from nanotouch_app.live.subject import of_preset  # noqa: E402
 
+PAGES = [task for task in TASKS.values() if task["is_page"]]
 READERS, SLOW = 30, 0.5
 PATIENCE = 120.0  # of a loaded machine [s]
 CONTACT = 20  # place of the contact radius in an update
@@ -68,8 +69,8 @@ class Page:
 async def teach(teacher: Page) -> None:
     """Predict, touch and let go until it is explained, go on."""
     await teacher.ask("task", name="lesson")
-    for page in LESSON:
-        await teacher.until(lambda page=page: teacher.task.get("name") == page.name)
+    for page in PAGES:
+        await teacher.until(lambda page=page: teacher.task.get("name") == page["name"])
         await teacher.ask("choose", number=1)
         await teacher.until(lambda: not teacher.task["choices"])
         while "passed" not in teacher.task:
@@ -101,7 +102,7 @@ def test_thirty_pages_watch_a_lesson() -> None:
             await pages[0].until(lambda: pages[0].update)
             await teach(pages[0])
             for page in [*pages[:2], *pages[3:]]:
-                await page.until(lambda page=page: len(page.explained) == len(LESSON))
+                await page.until(lambda page=page: len(page.explained) == len(PAGES))
             for page, task in zip(pages, tasks, strict=True):
                 task.cancel()
                 await page.socket.close()
@@ -115,7 +116,7 @@ def test_thirty_pages_watch_a_lesson() -> None:
         thread.join()
         host.close()
         desk.close()
-    names = [page.name for page in LESSON]
+    names = [page["name"] for page in PAGES]
     for page in [*pages[:2], *pages[3:]]:
         assert page.asked == names
         assert page.explained == pages[0].explained

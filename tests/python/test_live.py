@@ -47,7 +47,7 @@ def wait(host: Host, until: Callable[[Any], bool], act: Callable[[], None] = lam
 
 
 def scroll(host: Host) -> Callable[[], None]:
-    return lambda: host._do_wheel({"steps": 1.0})
+    return lambda: host.answer({"do": "wheel", "steps": 1.0})
 
 
 @pytest.mark.parametrize("name", sorted(PRESETS))
@@ -68,8 +68,8 @@ def test_the_spring_holds_the_tip(host: Host) -> None:
     wait(host, lambda frame: frame["tip_force"][2] > 2e-8, scroll(host))
     settled = time.monotonic() + 0.5
     frame = wait(host, lambda frame: time.monotonic() > settled)
-    lead = float(frame["tip_position"][2]) - host.hand.height
-    assert float(frame["tip_force"][2]) == pytest.approx(lead * host.hand.stiffness, rel=0.15, abs=3e-9)
+    lead = float(frame["tip_position"][2]) - host.core.state["height"]
+    assert float(frame["tip_force"][2]) == pytest.approx(lead * host.core.state["stiffness"], rel=0.15, abs=3e-9)
 
 
 def test_the_hand_stops_before_the_force_limit(host: Host) -> None:
@@ -79,7 +79,7 @@ def test_the_hand_stops_before_the_force_limit(host: Host) -> None:
     end = time.monotonic() + 1.0
     frame = wait(host, lambda frame: time.monotonic() > end)
     assert frame["state"] == 0
-    assert 0.5 * host.hand.limit < frame["tip_force"][2] < 1.1 * host.hand.limit
+    assert 0.5 * host.core.state["limit"] < frame["tip_force"][2] < 1.1 * host.core.state["limit"]
 
 
 def test_a_pause_holds_and_a_step_steps(host: Host) -> None:
@@ -105,7 +105,7 @@ def test_dry_air_pulls_off_as_the_law_says_and_undo_takes_it_back(host: Host) ->
     def note() -> None:
         frames = reader.read()
         lowest[0] = np.minimum(lowest[0], frames["tip_force"][:, 2].min(initial=0.0))
-        host._do_wheel({"steps": -0.3})
+        host.answer({"do": "wheel", "steps": -0.3})
 
     with nt.frames.attach(host.name) as reader:
         wait(host, lambda frame: frame["gap"] > 5e-9, note)
@@ -207,19 +207,19 @@ def test_old_frames_are_not_felt(host: Host) -> None:
 
 
 def test_sliders_are_those_that_mean_something(host: Host) -> None:
-    sliders = {slider.field: slider for slider in offered(host.world())}
+    sliders = {slider.row.field: slider for slider in offered(host.world())}
     assert "medium.relative_humidity" in sliders
     assert "medium.brush_thickness" not in sliders
     for slider in sliders.values():
-        assert slider.at(slider.place) == pytest.approx(slider.value, rel=0.01)
-        assert slider.about.doc
-        assert slider.about.minimum <= slider.low < slider.high <= slider.about.maximum
+        assert slider.row.at(slider.row.place(slider.value)) == pytest.approx(slider.value, rel=0.01)
+        assert slider.row.doc
+        assert 0.0 <= slider.row.low < slider.row.high
 
 
 def test_only_the_adhesion_that_is_read_has_a_slider() -> None:
     subject = of_preset("polyester")
     world = {"scene": subject.scene.to_dict(), "rig": subject.rig.to_dict(), "settings": nt.Settings().to_dict()}
-    fields = [slider.field for slider in offered(world)]
+    fields = [slider.row.field for slider in offered(world)]
     assert "adhesion.sample_surface_energy" in fields
     assert "adhesion.work_of_adhesion" not in fields
 

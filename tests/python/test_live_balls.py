@@ -11,10 +11,12 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch_app.live import charts, subject
-from nanotouch_app.training.push import RADIUS, Pattern, Push
+from nanotouch_app.live.subject import RADIUS
 from test_live_dents import Watched
+from touching import newest, result_of
 
 WIDTH = 10e-6
+START = (0.35 * WIDTH, 0.5 * WIDTH)  # of the ball that is pushed
 
 
 @pytest.fixture
@@ -26,14 +28,15 @@ def watched() -> Any:
     made.host.close()
 
 
-def begun(watched: Watched, name: str = "push") -> Push:
+def begun(watched: Watched, name: str = "push") -> None:
     """The balls of a task are laid."""
     watched.answer({"do": "task", "name": name, "seed": 1})
-    assert watched.host.trainer is not None
-    exercise = watched.host.trainer.exercise
-    assert isinstance(exercise, Push)
     watched.advance(0.05)
-    return exercise
+
+
+def places(watched: Watched) -> Any:
+    """Where they lie, as it was told last."""
+    return np.array(newest(watched.told, "particles")["places"])
 
 
 def go(watched: Watched, x: float, y: float, step: float = 20e-9) -> list[Any]:
@@ -55,8 +58,8 @@ def go(watched: Watched, x: float, y: float, step: float = 20e-9) -> list[Any]:
 def test_the_hand_feels_a_ball_until_it_is_lost(watched: Watched) -> None:
     """Against a model of its own kind: rolling takes 4 F_c xi (a/a0)^1.5 / R with the load that the lever shows, at the
     height of the contact; and the lever bends up by what the flank lifts."""
-    exercise = begun(watched)
-    ball = exercise.places[0].copy()
+    begun(watched)
+    ball = places(watched)[0]
     frames = go(watched, ball[0] + 0.25e-6, ball[1])  # from the right: it was reached, and is rolling
     rolling = 4.0 * 1.5 * np.pi * 0.06 * 0.0084 * RADIUS  # of a ball that bears nothing; pushed at its equator or above
     last = frames[-1]["tip_force"]
@@ -67,38 +70,36 @@ def test_the_hand_feels_a_ball_until_it_is_lost(watched: Watched) -> None:
     stiffness = float(watched.host.session.rig.probe.spring_constant)
     off = [stiffness * frame["deflection"] - frame["tip_force"][2] for frame in frames[-12:]]
     assert abs(np.mean(off)) < 3.0 * np.std(off) / np.sqrt(12.0)  # the reading's noise
-    assert exercise.places[0, 0] < ball[0] - 50e-9
-    assert (exercise.touches_now, exercise.losses) == (1, 0)
-    assert exercise.force[0] == pytest.approx(last[0], rel=1e-6)
+    assert places(watched)[0, 0] < ball[0] - 50e-9
+    assert watched.host.session.particles.forces[0][0] == pytest.approx(last[0], rel=1e-6)
     watched.answer({"do": "choose", "number": 0})
-    assert "take the tip away" in watched.told[-1]["why"]
+    assert "take the tip away" in newest(watched.told, "refused")["why"]
     go(watched, ball[0] + 1e-6, ball[1])
     assert watched.observer.newest()["tip_force"][0] == 0.0
-    assert (exercise.touches_now, exercise.losses) == (0, 1)
     told = [event for message in watched.told if message["tell"] == "particles" for event in message["events"]]
     assert told == ["snap", "tear"]
 
 
 def test_the_band_stretches_sideways(watched: Watched) -> None:
-    exercise = begun(watched)
-    go(watched, exercise.places[0, 0] + 0.25e-6, exercise.places[0, 1])
+    begun(watched)
+    go(watched, START[0] + 0.25e-6, START[1])
     sideways = watched.seen.sideways
     assert sideways[0] == pytest.approx(watched.observer.newest()["tip_force"][0])
     assert watched.seen.feel().level >= float(np.linalg.norm(sideways)) / watched.seen.load
 
 
 def test_a_push_is_undone_and_rewound(watched: Watched) -> None:
-    exercise = begun(watched)
-    lay = exercise.places.copy()
+    begun(watched)
+    lay = places(watched)
     assert watched.host.world()["undo"] == 0
     go(watched, lay[0, 0] + 0.25e-6, lay[0, 1])
     watched.answer({"do": "undo"})  # nothing to undo yet: the tip still pushes
     go(watched, lay[0, 0] + 1e-6, lay[0, 1])
-    assert exercise.places[0, 0] < lay[0, 0] - 50e-9
+    assert places(watched)[0, 0] < lay[0, 0] - 50e-9
     assert watched.host.world()["undo"] == 1
     watched.answer({"do": "undo"})
     watched.advance(0.02)
-    np.testing.assert_array_equal(exercise.places[0, :2], lay[0, :2])
+    np.testing.assert_array_equal(places(watched)[0, :2], lay[0, :2])
     assert watched.host.world()["undo"] == 0
 
 
@@ -116,34 +117,32 @@ def test_balls_push_each_other(watched: Watched) -> None:
     assert after.dissipated > 0.0
     assert frames[-1]["tip_force"][0] < 0.0
     go(watched, x - 2e-6, y)
-    kinds = [event[1] for event in session.metadata()["events"]]
-    assert kinds.count("lay") == 3
-    assert kinds.count("pushed") == 3
-    watched.host._look_on()
+    watched.advance(0.02)
     watched.answer({"do": "undo"})
     watched.advance(0.02)
     np.testing.assert_array_equal(session.particles.positions[:, :2], before[:, :2])
 
 
 def test_where_the_tip_is_no_ball_is_laid(watched: Watched) -> None:
-    go(watched, Push.starts[0][0] * WIDTH, Push.starts[0][1] * WIDTH)
+    go(watched, *START)
     watched.answer({"do": "task", "name": "push", "seed": 1})
-    assert "move it away first" in watched.told[-1]["why"]
-    assert watched.host.trainer is None
+    assert "move it away first" in newest(watched.told, "refused")["why"]
+    assert watched.host.core.state["task"] == ""
     go(watched, 0.5 * WIDTH, 0.5 * WIDTH)
     watched.answer({"do": "task", "name": "push", "seed": 1})
-    assert watched.host.trainer is not None
     watched.answer({"do": "task", "name": "pattern", "seed": 1})  # those of the first task are put aside
     watched.advance(0.02)
-    exercise = watched.host.trainer.exercise
-    assert isinstance(exercise, Pattern)
-    np.testing.assert_allclose(exercise.places[:, :2], WIDTH * np.array(Pattern.starts), atol=1e-12)
+    found = places(watched)
+    assert len(found) == 5
+    assert (found[:, :2] > 0.1 * WIDTH).all()
+    assert len(watched.host.session.particles.losses) == 5
 
 
 @pytest.mark.parametrize("steps", [3.0, 0.01])
 def test_a_tip_that_comes_down_on_a_ball_keeps_the_promise(watched: Watched, steps: float) -> None:
     """Fast: the supervisor lifts it. Slowly: the hand gives way before the limit."""
-    x, y, _ = begun(watched).places[0]
+    begun(watched)
+    x, y = START
     for _ in range(60):
         watched.answer({"do": "wheel", "steps": -20.0})
         watched.advance(0.02)
@@ -168,11 +167,9 @@ def test_a_tip_that_comes_down_on_a_ball_keeps_the_promise(watched: Watched, ste
 def test_a_ball_that_is_nowhere_near_its_ring_does_not_pass(watched: Watched) -> None:
     begun(watched)
     watched.answer({"do": "choose", "number": 0})
-    assert watched.host.trainer is not None
-    result = watched.host.trainer.result
-    assert result is not None
-    assert (result.passed, result.score) == (False, 0.0)
-    assert result.figures["largest error"][0] == pytest.approx(2e-6, rel=1e-6)
+    task, (figures, _) = newest(watched.told, "task"), result_of(watched.host)
+    assert (task["passed"], task["score"]) == (False, 0.0)
+    assert float(figures["largest error [m]"]) == pytest.approx(2e-6, rel=1e-6)
 
 
 def test_balls_are_those_of_the_scene() -> None:
@@ -185,18 +182,17 @@ def test_balls_are_those_of_the_scene() -> None:
 
 def test_what_a_push_costs_is_heat(watched: Watched) -> None:
     """The work of the hand goes into the ball, which gives next to nothing back: rolling friction times way."""
-    exercise = begun(watched)
-    x, y, _ = exercise.places[0]
-    go(watched, x + 0.2e-6, y)
+    begun(watched)
+    go(watched, START[0] + 0.2e-6, START[1])
+    watched.hear(watched.host.clock())
     words = charts._energies(watched.seen)
     found = {
         name: float(value)
         for name, value in re.findall(r"(hand|tip|heat) (?:about )?(-?[\d.]+)", words.replace("- ", "-"))
     }
-    assert watched.seen.balance is not None
-    hand = watched.seen.balance.energies.hand
+    hand, _, _, heat = watched.seen.clock["energies"]
     spent = watched.host.session.particles.dissipated
     assert found["heat"] > 0.8 * found["hand"] > 0.0, words
-    assert watched.seen.spent.of_touch == pytest.approx(spent, rel=0.1)
+    assert heat == pytest.approx(spent, rel=0.1)
     assert abs(found["tip"]) < 0.2 * found["hand"], words
     assert hand == pytest.approx(spent, rel=0.25)

@@ -14,13 +14,13 @@ from nanotouch_app.live.entry import Entry, value_of
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.picture import Layout
 from nanotouch_app.live.seen import Seen
-from nanotouch_app.live.sliders import Slider, Sliders
+from nanotouch_app.live.sliders import Slider, Sliders, offered
 from nanotouch_app.live.subject import of_preset
-from nanotouch_app.training import named
 
-HUMIDITY = Slider("scene", "medium.relative_humidity", "humidity", 0.0, 0.95, 0.4)
-MODULUS = Slider("scene", "sample.youngs_modulus", "sample modulus", 1e8, 1e12, 1e11)
-SCALE = Slider("settings", "gains.alpha_f", "force scaling", 1e5, 1e8, 1e6)
+WORLD = {"scene": nt.Scene().to_dict(), "rig": nt.Rig().to_dict(), "settings": nt.Settings().to_dict()}
+BY_FIELD = {slider.row.field: slider for slider in offered(WORLD)}
+HUMIDITY, MODULUS = BY_FIELD["medium.relative_humidity"], BY_FIELD["sample.youngs_modulus"]
+SCALE = BY_FIELD["gains.alpha_f"]
 
 
 def typed(entry: Entry, text: str, last: str = "return") -> str:
@@ -38,7 +38,7 @@ def test_a_number_is_typed_with_its_unit(slider: Slider, text: str, value: float
     assert value_of(slider, text) == pytest.approx(value)
     entry = Entry(slider)
     assert typed(entry, text) == "done"
-    assert entry.request() == {"do": "change", "what": slider.what, "field": slider.field,
+    assert entry.request() == {"do": "change", "what": slider.row.what, "field": slider.row.field,
                                "value": pytest.approx(value)}  # fmt: skip
 
 
@@ -93,7 +93,7 @@ def test_every_choice_of_the_menu_is_a_task_under_its_button() -> None:
         zip(board.MENU, board.buttons(menu, 20.0, 800.0), strict=True)
     ):
         assert board.at(menu, 20.0, 800.0, (x + 0.5 * width, y + 0.5 * height)) == number
-        assert not name or named(name)
+        assert not name or name in board.TASKS
     assert board.at(menu, 20.0, 800.0, (25.0, 795.0)) is None
 
 

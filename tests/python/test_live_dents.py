@@ -15,9 +15,8 @@ from nanotouch_app.live import board, cards, dented, film
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.look import LIGHT
 from nanotouch_app.live.seen import Seen
-from nanotouch_app.live.subject import WINDOW_PRESETS, felt, of_preset
-from nanotouch_app.training import named
-from nanotouch_app.training.ideal import Operator
+from nanotouch_app.live.subject import PRESETS, felt, of_preset
+from touching import Operator, newest
 
 GOLD = plasticity.Indentation(30e-9, 77e9, 0.35e9)
 
@@ -29,8 +28,7 @@ class Watched:
         self.seen = Seen()
         self.told: list[dict[str, Any]] = []
         self.host = Host(of_preset(preset), self.hear, stepped=True)
-        self.hear(self.host.world())
-        self.host.left.report()
+        self.host.report()
         self.frames: list[Any] = []
 
     @property
@@ -60,8 +58,7 @@ def watched() -> Any:
 
 def operator(watched: Watched) -> Operator:
     watched.answer({"do": "task", "name": "dent", "seed": 1})
-    assert watched.host.trainer is not None
-    return Operator(watched, watched.host.trainer.exercise)
+    return Operator(watched, 300e-9)
 
 
 def test_the_drawn_law_is_the_one_that_is_felt(watched: Watched) -> None:
@@ -86,7 +83,7 @@ def test_the_drawn_law_is_the_one_that_is_felt(watched: Watched) -> None:
                 drawn = np.interp(frame["gap"], way_out[:, 0], way_out[:, 1])
                 assert frame["tip_force"][2] == pytest.approx(drawn, rel=1e-2, abs=0.5e-9)
         hand.up()
-    (dent,) = watched.host.left.dents
+    (dent,) = watched.host.dents
     assert watched.seen.dented is not None
     assert watched.seen.dented.dents == (dent,)
     assert watched.seen.dented.began == dent.imprint.radius
@@ -98,11 +95,10 @@ def test_energies_of_a_dent_are_heat(watched: Watched) -> None:
     hand = operator(watched)
     hand.down_to(150e-9)
     hand.up()
-    (dent,) = watched.host.left.dents
+    (dent,) = watched.host.dents
     assert watched.seen.dented is not None
     heat = float(watched.seen.dented.law.at_load(dent.load).dissipated)
-    assert watched.seen.balance is not None
-    assert watched.seen.balance.energies.tip == pytest.approx(heat, rel=0.02)
+    assert watched.host.clock()["energies"][2] == pytest.approx(heat, rel=0.02)
     assert watched.seen.dented.stored(0.0) == 0.0
 
 
@@ -110,10 +106,10 @@ def test_undo_takes_the_dent_back(watched: Watched) -> None:
     hand = operator(watched)
     hand.down_to(100e-9)
     hand.up()
-    assert len(watched.host.left.dents) == 1
+    assert len(watched.host.dents) == 1
     assert watched.host.world()["undo"] == 1
     watched.answer({"do": "undo"})
-    assert watched.host.left.dents == ()
+    assert watched.host.dents == ()
     assert watched.seen.dented is not None
     assert watched.seen.dented.dents == ()
     watched.answer({"do": "undo"})
@@ -197,17 +193,17 @@ def test_one_undo_takes_back_all_that_a_touch_has_left(watched: Watched) -> None
             refused = [message["why"] for message in watched.told if message["tell"] == "refused"]
             assert "lift it first" in refused[-1]
         hand.up()
-        left = watched.host.left.dents
+        left = watched.host.dents
         if count == 1:
             before = left
             watched.answer({"do": "move", "way": (0.0, 40e-9, 0.0)})
             watched.advance(0.3)
     assert len(left) > len(before) > 0
     watched.answer({"do": "undo"})
-    assert watched.host.left.dents == before
+    assert watched.host.dents == before
     assert watched.host.clock()["undo"] == len(before)
     watched.answer({"do": "undo"})
-    assert watched.host.left.dents == ()
+    assert watched.host.dents == ()
 
 
 def test_the_picture_draws_dents_and_balls(tmp_path: Any) -> None:
@@ -242,10 +238,9 @@ def test_each_preset_has_a_card_with_its_words() -> None:
     written: list[str] = []
     painter = SimpleNamespace(box=lambda *_: None, text=lambda _x, _y, words, *_, **__: written.append(words))
     cards.draw(cast(Any, painter), LIGHT, (0.0, 0.0, 800.0, 800.0), "")
-    for name, preset in WINDOW_PRESETS.items():
-        assert preset.title in written
+    for name, preset in PRESETS.items():
+        assert preset["title"] in written
         assert felt(name)
-        assert of_preset(name).felt == felt(name)
 
 
 def test_each_task_of_the_menu_has_a_key() -> None:
@@ -272,5 +267,5 @@ def test_a_dent_task_on_a_sample_that_keeps_none_is_refused() -> None:
     watched = Watched("polyester")
     watched.answer({"do": "task", "name": "dent"})
     watched.host.close()
-    assert "keeps no dents; lay soft_gold" in watched.told[-1]["why"]
-    assert named("scratch").preset == "soft_gold"
+    assert "keeps no dents; lay soft_gold" in newest(watched.told, "refused")["why"]
+    assert board.TASKS["scratch"]["preset"] == "soft_gold"

@@ -39,18 +39,18 @@ def test_one_hand_drives(led: tuple[Host, list[dict[str, Any]]]) -> None:
     host, told = led
     other = Lease(host.name)
     other.take()
-    before = host.hand.height
+    before = host.core.state["height"]
     host.answer({"do": "wheel", "steps": 3.0})
     assert "another program drives this session" in told[-1]["why"]
-    assert host.hand.height == before
+    assert host.core.state["height"] == before
     host.answer({"do": "stop"})  # needs no lease
     host.advance(0.01)
     assert host.session.state == "LATCHED"
     other.close()
     host.answer({"do": "arm"})
-    rest = host.hand.height
+    rest = host.core.state["height"]
     host.answer({"do": "wheel", "steps": 3.0})
-    assert host.hand.height < rest
+    assert host.core.state["height"] < rest
     with pytest.raises(Error, match="another program drives"):
         Lease(host.name).take()
 

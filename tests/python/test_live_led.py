@@ -120,15 +120,15 @@ def test_a_host_that_presses_lets_go_where_another_program_drives(monkeypatch: p
     host = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True)
     host.advance(0.05)
     host.answer({"do": "press", "on": True})
-    place = host.hand.place.copy()
+    place = host.core.state["place"]
 
     def taken(_: Lease) -> None:
         raise Error(TAKEN)
 
     monkeypatch.setattr(Lease, "take", taken)
     host.tick()
-    assert not host.hand.presses
-    assert np.array_equal(host.hand.place, place)
+    assert not host.core.state["presses"]
+    assert host.core.state["place"] == place
     host.close()
 
 

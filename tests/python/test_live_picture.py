@@ -196,9 +196,9 @@ def test_what_a_curve_does_not_tell_is_assumed_and_said() -> None:
     measured = curves.analyse(curve).pull_off_force
     assert measured == pytest.approx(nt.contact.pull_off_force("maugis", contact), rel=0.05)
     assert subject.scene.plan().pull_off_force == pytest.approx(measured, rel=0.01)
-    assert "E* 10 GPa (assumed: stiff)" in subject.felt
-    assert "(from the pull-off)" in subject.felt
-    assert "--radius" not in subject.felt
+    assert "E* 10 GPa (assumed: stiff)" in subject.said
+    assert "(from the pull-off)" in subject.said
+    assert "--radius" not in subject.said
 
 
 def test_each_real_curve_can_be_touched() -> None:
@@ -207,8 +207,8 @@ def test_each_real_curve_can_be_touched() -> None:
         pytest.skip("the real curves are not there")
     for file in files_there:
         subject = files.of(str(file))
-        assert subject.felt.startswith("Your curve: ")
-        assert "R = 20 nm is assumed" in subject.felt
+        assert subject.said.startswith("Your curve: ")
+        assert "R = 20 nm is assumed" in subject.said
         host = Host(subject, lambda message: None, stepped=True)
         host.answer({"do": "press", "on": True})
         for _ in range(60):
@@ -338,7 +338,7 @@ def test_another_sample_is_laid_under_the_tip(monkeypatch: pytest.MonkeyPatch) -
         second = list(studio.play([(0.6, {"do": "preset", "name": "cell_in_liquid"})]))[-1]
         assert studio.picture.seen.world["title"] == "A living cell"
         assert studio.picture.stage.unit == pytest.approx(60e-6)
-        assert "medium.brush_thickness" in [slider.field for slider in studio.picture.sliders.sliders]
+        assert "medium.brush_thickness" in [slider.row.field for slider in studio.picture.sliders.sliders]
         assert np.any(first != second)
     finally:
         studio.close()

@@ -56,7 +56,7 @@ class Live:
         self.desk = Desk(subject.topography)
         self.host = Host(subject, self.desk.tell)
         self.desk.wait_ready()  # the window outlives a slow start
-        self.desk.tell(self.host.world())
+        self.host.report()
         self.asked: list[dict[str, Any]] = []
 
     def x(self, *arguments: object) -> None:
@@ -97,7 +97,7 @@ def _recorded(path: Path, desk: Desk | None) -> Any:
     """A scripted touch of a stepped session, with a window that watches it or without."""
     host = Host(of_preset("silicon_in_air"), lambda message: None, out=str(path), stepped=True)
     if desk is not None:
-        desk.tell(host.world())
+        host.report()
     host.advance(0.1)
     for request, duration in (({"do": "press", "on": True}, 0.8), ({"do": "wheel", "steps": -4.0}, 0.2),
                               ({"do": "press", "on": False}, 0.5)):  # fmt: skip
@@ -134,7 +134,7 @@ def test_a_person_touches_with_the_mouse(screen: str, tmp_path: Path, monkeypatc
         moved = live.serve(lambda frame: frame["tip_position"][0] > before["tip_position"][0] + 5e-9)
         assert abs(moved["tip_position"][1] - before["tip_position"][1]) < 5e-9
         live.x("keydown", "space")
-        live.serve(lambda frame: frame["tip_force"][2] > 0.8 * live.host.hand.press_force)
+        live.serve(lambda frame: frame["tip_force"][2] > 0.8 * live.host.core.state["press"])
         live.x("keyup", "space")
         live.serve(lambda frame: frame["gap"] > 0.0)
         live.x("key", "p")
@@ -175,10 +175,9 @@ def test_a_person_scratches_gold_with_mouse_and_space(
         return image.imread(path)[..., :3]
 
     try:
-        live.host.left.report()
         live.x("mousemove", 440, 380)
         live.x("keydown", "space")
-        before = live.serve(lambda frame: frame["tip_force"][2] > 0.8 * live.host.hand.press_force)
+        before = live.serve(lambda frame: frame["tip_force"][2] > 0.8 * live.host.core.state["press"])
         live.x("mousedown", 1)
         live.x("mousemove_relative", "--", 60, 0)
         live.x("mouseup", 1)
@@ -187,10 +186,10 @@ def test_a_person_scratches_gold_with_mouse_and_space(
         live.serve(lambda frame: any(one["do"] == "undo" for one in live.asked))
         live.x("keyup", "space")
         live.serve(lambda frame: frame["gap"] > 5e-9)
-        live.serve(lambda frame: any(dent.imprint[:2] != dent.imprint[2:4] for dent in live.host.left.dents))
+        live.serve(lambda frame: any(dent.imprint[:2] != dent.imprint[2:4] for dent in live.host.dents))
         grooved = picture("groove")
         live.x("key", "z")
-        live.serve(lambda frame: not live.host.left.dents)
+        live.serve(lambda frame: not live.host.dents)
         flat = picture("flat")
         view = np.s_[200:700, 100:800]
         assert np.abs(grooved[view] - flat[view]).max() > 0.1

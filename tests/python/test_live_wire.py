@@ -8,14 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from nanotouch.manipulation import nanowire
 from nanotouch_app import view
 from nanotouch_app.live import film
 from nanotouch_app.live.subject import of_preset
-from nanotouch_app.training.wire import START, TARGET, Wire
 from test_live_balls import go
 from test_live_dents import Watched
+from touching import newest
 
 WIDTH = 6e-6
+START, TARGET = (0.5, 0.4, 0.0), (0.5, 0.5, 0.4)  # of its middle, over the width; angle [rad]
 
 
 @pytest.fixture
@@ -27,19 +29,21 @@ def watched() -> Any:
     made.host.close()
 
 
-def begun(watched: Watched) -> Wire:
+def begun(watched: Watched) -> None:
     """It is laid."""
     watched.answer({"do": "task", "name": "wire", "seed": 1})
-    assert watched.host.trainer is not None
-    exercise = watched.host.trainer.exercise
-    assert isinstance(exercise, Wire)
     watched.advance(0.05)
-    return exercise
+
+
+def pose(watched: Watched) -> list[float]:
+    """Its middle and angle, as it was told last."""
+    told = newest(watched.told, "particles")
+    return [*told["places"][0][:2], told["angles"][0]]
 
 
 def test_the_hand_feels_it_and_a_push_is_undone(watched: Watched) -> None:
     """From above, near its right end: it turns, and resists with 2 q c; Z lays it back with its angle."""
-    exercise = begun(watched)
+    begun(watched)
     wire = watched.host.subject.rod(watched.host.scene)  # type: ignore[misc]
     x, y = START[0] * WIDTH + 0.8e-6, START[1] * WIDTH
     go(watched, x, y + 0.3e-6)
@@ -48,13 +52,12 @@ def test_the_hand_feels_it_and_a_push_is_undone(watched: Watched) -> None:
     c = math.sqrt(0.8**2 + 1.0) - 0.8
     assert force[1] == pytest.approx(2.0 * wire.friction * c * 1e-6, rel=0.05)
     assert force[2] == pytest.approx(math.tan(0.26) * np.hypot(force[0], force[1]), rel=0.05)
-    assert exercise.pose[2] < -0.05
+    assert pose(watched)[2] < -0.05
     go(watched, x, y + 0.4e-6)
-    assert (exercise.touches_now, exercise.losses) == (0, 1)
     assert watched.host.world()["undo"] == 1
     watched.answer({"do": "undo"})
     watched.advance(0.02)
-    np.testing.assert_array_equal(exercise.pose, [START[0] * WIDTH, START[1] * WIDTH, START[2]])
+    np.testing.assert_array_equal(pose(watched), [START[0] * WIDTH, START[1] * WIDTH, START[2]])
     assert watched.host.world()["undo"] == 0
     told = [message for message in watched.told if message["tell"] == "particles"]
     assert [event for message in told for event in message["events"]] == ["snap", "tear"]
@@ -62,20 +65,16 @@ def test_the_hand_feels_it_and_a_push_is_undone(watched: Watched) -> None:
 
 
 def test_its_ends_may_lie_in_either_ring(watched: Watched) -> None:
-    exercise = begun(watched)
+    begun(watched)
     session, place = watched.host.session, (TARGET[0] * WIDTH, TARGET[1] * WIDTH + 0.05e-6)
     go(watched, 0.5e-6, 0.5e-6)
-    errors = []
     for angle in (TARGET[2], TARGET[2] + math.pi):
         session.lay_rod((*place, angle))
-        watched.host._look_on()
-        errors.append(exercise.errors)
-    np.testing.assert_allclose(errors, 0.05e-6, rtol=1e-9)
+        watched.advance(0.25)
+        assert newest(watched.told, "task")["now"].startswith("50.0 nm off")
     watched.answer({"do": "choose", "number": 0})
-    assert watched.host.trainer is not None
-    result = watched.host.trainer.result
-    assert result is not None
-    assert (result.passed, result.score) == (True, 100.0)
+    task = newest(watched.told, "task")
+    assert (task["passed"], task["score"]) == (True, 100.0)
 
 
 def test_a_task_lays_the_sample_that_it_needs(watched: Watched) -> None:
@@ -90,8 +89,8 @@ def test_a_task_lays_the_sample_that_it_needs(watched: Watched) -> None:
 def test_where_the_tip_is_it_is_not_laid(watched: Watched) -> None:
     go(watched, START[0] * WIDTH, START[1] * WIDTH)
     watched.answer({"do": "task", "name": "wire", "seed": 1})
-    assert "move it away first" in watched.told[-1]["why"]
-    assert watched.host.trainer is None
+    assert "move it away first" in newest(watched.told, "refused")["why"]
+    assert watched.host.core.state["task"] == ""
 
 
 def test_the_picture_draws_it() -> None:
@@ -102,14 +101,14 @@ def test_the_picture_draws_it() -> None:
         pytest.skip(reason)
     studio = film.Studio(of_preset("wire_on_glass"))
     studio.host.answer({"do": "task", "name": "wire", "seed": 1})
-    balls = studio.picture.stage.balls
+    balls, wire = studio.picture.stage.balls, nanowire()
     (actor,) = balls.balls
     assert len(balls.rings) == 2
     for angle in (START[2], 0.5):
         studio.host.session.lay_rod((0.5 * WIDTH, 0.3 * WIDTH, angle))
-        studio.host._look_on()
+        studio.host.advance(0.02)
         left, right, near, far, low, high = np.array(actor.GetBounds()) * balls.length
-        whole, wide = Wire.length + 2.0 * Wire.radius, 2.0 * Wire.radius  # VTK bounds the box that is turned
+        whole, wide = wire.length + 2.0 * wire.radius, 2.0 * wire.radius  # VTK bounds the box that is turned
         assert right - left == pytest.approx(whole * math.cos(angle) + wide * math.sin(angle), rel=0.02)
         assert far - near == pytest.approx(whole * math.sin(angle) + wide * math.cos(angle), rel=0.02)
         assert high - low == pytest.approx(wide, rel=0.02)

@@ -12,11 +12,10 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from nanotouch.errors import InvalidValue
+from nanotouch.touch import host
 
-from nanotouch_app.live.sliders import OFFERED
+from nanotouch_app.live.board import TASKS
 from nanotouch_app.live.subject import PRESETS
-from nanotouch_app.training import TASKS
-from nanotouch_app.training.lesson import LESSON
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 MOST_STEPS = 100.0  # of the wheel at once
@@ -90,14 +89,14 @@ def _text(value: object) -> bool:
 
 
 def _task(value: object) -> bool:
-    return isinstance(value, str) and value in ("", "lesson", *TASKS, *(page.name for page in LESSON))
+    return isinstance(value, str) and value in ("", *TASKS)
 
 
 def _preset(value: object) -> bool:
     return isinstance(value, str) and value in PRESETS
 
 
-FIELDS = {field: what for what, field, *_ in OFFERED}  # that have a slider; no other is changed from a page
+FIELDS: dict[str, str] = host.slider_fields()  # that have a slider; no other is changed from a page
 # what may be asked over a socket: no file of this machine, no end
 ASKED: dict[str, dict[str, Callable[[object], bool]]] = {
     "move": {"way": _way}, "wheel": {"steps": _steps}, "press": {"on": lambda value: isinstance(value, bool)},

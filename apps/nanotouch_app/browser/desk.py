@@ -42,8 +42,7 @@ class BrowserDesk:
         """Until Ctrl-C, or a time of the monotonic clock: what is asked, what happens by itself, the clock."""
         if properties := host.properties():
             self.server.readers.surface = surface_bytes(self.topography.heights, self.topography.pixel_size, properties)
-        self.tell(host.world())
-        host.left.report()
+        host.report()
         serve(self, host, first, until)
 
     def close(self) -> None:

@@ -12,10 +12,9 @@ import nanotouch as nt
 from nanotouch.errors import Error
 
 from nanotouch_app.browser.update import Summary, message_text
-from nanotouch_app.live.energy import Balance, Spent
 
 Message = dict[str, Any]
-KEPT = ("world", "dents", "task", "particles")  # messages that one who comes later is told, too
+KEPT = ("sliders", "world", "dents", "task", "particles")  # messages that one who comes later is told, too
 
 
 class Reader:
@@ -40,8 +39,6 @@ class Readers:
         self.name = ""
         self.touched = False
         self.changes = 0
-        self.balance: Balance | None = None
-        self.spent = Spent()
 
     # --- what the session shows ---
 
@@ -60,9 +57,6 @@ class Readers:
         if not len(frames):
             return []
         part = Summary.of(frames, self.touched)
-        if self.balance is not None:
-            self.balance.add(frames)
-            self.spent.follow(not self.balance.free)
         self.touched = bool(frames[-1]["contact_radius"] > 0.0)
         due = []
         for reader in self.all:
@@ -83,17 +77,13 @@ class Readers:
         kind = message["tell"]
         if kind == "laid":
             self.surface = surface
-            self.kept.pop("dents", None)  # of what lay there before
+            for name in ("dents", "sliders"):  # of what lay there before
+                self.kept.pop(name, None)
             return [(reader, surface) for reader in self.all]
         if kind == "properties":
             return []
-        if kind == "clock" and self.balance is not None:
-            message = {**message, "energies": list(self.spent.counted(self.balance.energies))}
-        if kind == "particles":
-            self.spent.now = message.get("heat", self.spent.now)
         if kind == "world":
             self.changes += 1
-            self._weigh(message)
             try:
                 self.attach(message["name"])
             except Error:
@@ -103,14 +93,6 @@ class Readers:
             self.kept[kind] = message
         text = message_text(message)
         return [(reader, text) for reader in self.all if self._wants(reader, kind)]
-
-    def _weigh(self, world: Message) -> None:
-        """Where the work of the hand goes, as the window shows it; anew when its spring has changed."""
-        spring, zero = float(world["stiffness"]), float(world["zero"])
-        alpha_p, load = float(world["settings"]["gains"]["alpha_p"]), float(world["scene"]["range"]["maximum_load"])
-        old = self.balance
-        if old is None or (spring, zero, alpha_p, load) != (old.spring, old.zero, old.alpha_p, old.load):
-            self.balance = Balance(spring, zero, alpha_p, load)
 
     @staticmethod
     def _wants(reader: Reader, kind: str) -> bool:

@@ -99,8 +99,7 @@ class Touch(anywidget.AnyWidget):
     # --- the thread ---
 
     def _run(self) -> None:
-        self._tell(self._host.world())
-        self._host.left.report()
+        self._host.report()
         shown = told = 0.0
         while not self._ends.is_set():
             with suppress(queue.Empty):

@@ -6,20 +6,22 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
+from nanotouch.touch import host
+
 from nanotouch_app.live.look import SMALL, TITLE, Palette
 from nanotouch_app.live.painter import Painter
-from nanotouch_app.training import TASKS
-from nanotouch_app.training.lesson import LESSON
 
 Frame = tuple[float, float, float, float]
 WIDTH, LETTERS, LINE, BUTTON, PAD = 470.0, 66, 18.0, 28.0, 14.0  # [pixels]; letters of a line
-MENU = {**{name: task.title for name, task in TASKS.items()},
-        "lesson": "Lesson: predict, touch, explain", "": "No task"}  # fmt: skip
+TASKS = {task["name"]: task for task in host.tasks()}
+PAGES = sum(task["is_page"] for task in TASKS.values())
+MENU = {**{name: task["title"] for name, task in TASKS.items() if not task["is_page"]},
+        "": "No task"}  # fmt: skip
 
 
 def menu() -> dict[str, Any]:
     """The list of all tasks, as a task is told."""
-    return {"title": "What to learn", "words": f"Tasks with a score, and a lesson of {len(LESSON)} pages.", "now": "",
+    return {"title": "What to learn", "words": f"Tasks with a score, and a lesson of {PAGES} pages.", "now": "",
             "choices": list(MENU.values())}  # fmt: skip
 
 
@@ -27,7 +29,7 @@ def _lines(task: dict[str, Any]) -> list[tuple[str, str]]:
     """Lines with their kind: words, or how it stands."""
     rows = [(line, "words") for line in textwrap.wrap(task["words"], LETTERS)]
     rows += [(line, "now") for line in textwrap.wrap(task["now"], LETTERS)]
-    if "score" in task and not task["name"].startswith("lesson"):
+    if task.get("scored"):
         rows.insert(0, (f"{'passed' if task['passed'] else 'not passed'}, {task['score']:.0f} of 100", "score"))
     if task.get("saved"):
         rows.append((task["saved"].rsplit("/", 1)[-1], "words"))

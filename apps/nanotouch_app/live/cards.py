@@ -7,7 +7,7 @@ import textwrap
 
 from nanotouch_app.live.look import SMALL, TITLE, Palette
 from nanotouch_app.live.painter import Painter
-from nanotouch_app.live.subject import WINDOW_PRESETS, felt
+from nanotouch_app.live.subject import PRESETS, felt
 
 Frame = tuple[float, float, float, float]
 COLUMNS, GAP, HEAD = 2, 12.0, 44.0  # [pixels]
@@ -17,10 +17,10 @@ LETTER = 6.1  # width of one [pixels]
 def boxes(frame: Frame) -> dict[str, Frame]:
     """Where each card lies."""
     x, y, width, height = frame
-    rows = -(-len(WINDOW_PRESETS) // COLUMNS)
+    rows = -(-len(PRESETS) // COLUMNS)
     across, up = (width - GAP * (COLUMNS + 1)) / COLUMNS, (height - HEAD - GAP * rows) / rows
     places = {}
-    for number, name in enumerate(WINDOW_PRESETS):
+    for number, name in enumerate(PRESETS):
         row, column = divmod(number, COLUMNS)
         places[name] = (x + GAP + column * (across + GAP), y + height - HEAD - (row + 1) * up - row * GAP, across, up)
     return places
@@ -41,12 +41,12 @@ def draw(painter: Painter, palette: Palette, frame: Frame, opened: str) -> None:
     painter.text(x + GAP, y + height - 22, "What to touch", palette.ink, TITLE, bold=True)
     painter.text(x + width - GAP, y + height - 22, "click one; C: back", palette.quiet, SMALL, "right")
     for name, box in boxes(frame).items():
-        preset = WINDOW_PRESETS[name]
-        painter.box(box, palette.paper, palette.accent if preset.title == opened else palette.line)
+        preset = PRESETS[name]
+        painter.box(box, palette.paper, palette.accent if preset["title"] == opened else palette.line)
         left, top = box[0] + 12, box[1] + box[3]
         letters = max(10, int((box[2] - 24) / LETTER))
-        painter.text(left, top - 17, preset.title, palette.ink, bold=True)
-        lines = [(line, palette.accent) for line in textwrap.wrap(preset.hint, letters)]
+        painter.text(left, top - 17, preset["title"], palette.ink, bold=True)
+        lines = [(line, palette.accent) for line in textwrap.wrap(preset["hint"], letters)]
         lines += [(line, palette.quiet) for line in textwrap.wrap(felt(name), letters)]
         fits = int((box[3] - 44.0) / 16.0) + 1
         if len(lines) > fits:

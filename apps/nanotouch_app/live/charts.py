@@ -121,16 +121,16 @@ def _alike(values: list[float]) -> list[float]:
 
 def _energies(seen: Seen) -> str:
     """Where the work of the hand has gone in this touch; "" where the hand is not known."""
-    if seen.balance is None:
+    if "energies" not in seen.clock:
         return ""
-    hand, stored, tip, heat = seen.spent.counted(seen.balance.energies)
+    hand, stored, tip, heat = seen.clock["energies"]
     if seen.dented is not None:  # what has yielded gives nothing back
         elastic = seen.dented.stored(float(seen.frame["contact_radius"]))
         tip, heat = elastic, heat + tip - elastic
     unit, factor = ("fJ", 1e15) if max(abs(hand), abs(stored)) > 1e-15 else ("aJ", 1e18)
     hand, stored, tip, heat = _alike([factor * value for value in (hand, stored, tip, heat)])
     told = [f"{name} {value:.3g}" for name, value in (("spring", stored), ("tip", tip), ("heat", heat))]
-    about = "" if seen.balance.whole else "about "  # ticks that were not drawn are bridged by straight lines
+    about = "about " if seen.clock.get("missed") else ""  # ticks that were not drawn are bridged by straight lines
     return f"work of the hand {about}{hand:.3g} {unit} = {' + '.join(told)}".replace("-0 ", "0 ").replace("+ -", "- ")
 
 

@@ -18,11 +18,11 @@ from nanotouch.images import Topography
 from nanotouch_app.common import output, properties, scenes, stop
 from nanotouch_app.common.quantity import parse_quantity, whole_number
 from nanotouch_app.live import display, files, hands, real
+from nanotouch_app.live.board import TASKS
 from nanotouch_app.live.desk import Desk
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.reel import surface_of
-from nanotouch_app.live.subject import WINDOW_PRESETS, Subject
-from nanotouch_app.training import TASKS, named
+from nanotouch_app.live.subject import PRESETS, Subject
 
 Front = Callable[[Topography], Any]  # a window or a server, over a surface
 CURVE = ("radius", "spring_constant")  # options of a force curve
@@ -76,9 +76,8 @@ def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     if args.list:
         return _list()
-    task = None if args.task is None else named(args.task)
     if args.what is None:
-        args.what = "silicon_in_air" if task is None else task.preset
+        args.what = next(iter(PRESETS)) if args.task is None else _task(args.task)["preset"]
     if real.is_named(args.what):
         return real.touch(args)
     is_recording = _checked(args)
@@ -91,12 +90,18 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _list() -> int:
-    for name, preset in WINDOW_PRESETS.items():
-        output.say(f"{name:16} {preset.title}: {preset.hint}")
+    for name, preset in PRESETS.items():
+        output.say(f"{name:16} {preset['title']}: {preset['hint']}")
     for name, one in TASKS.items():
-        print(f"--task {name:9} {one.title}")
-    print("--task lesson    predict, touch, explain: five pages")
+        if not one["is_page"]:
+            print(f"--task {name:9} {one['title']}")
     return 0
+
+
+def _task(name: str) -> dict[str, Any]:
+    if name not in TASKS:
+        raise InvalidValue(f"task {name!r}: valid are {', '.join(TASKS)}")
+    return TASKS[name]
 
 
 def _checked(args: argparse.Namespace) -> bool:
@@ -155,7 +160,7 @@ def _check_together(args: argparse.Namespace, is_recording: bool) -> None:
          ("task", "record", "film", *CURVE, "browser")),
         ("--film films a scripted touch", args.film is not None, ("task", "record", "browser")),
         (f"{args.what} is no force curve",
-         args.what in WINDOW_PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"), CURVE),
+         args.what in PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"), CURVE),
         ("what is said of each place goes with an image", bool(properties.given(args)), CURVE),
         ("without --browser a window shows it", not args.browser, ("page", "port")),
     ):  # fmt: skip

@@ -86,8 +86,7 @@ class Desk:
 
     def serve(self, host: Any, first: dict[str, Any] | None = None) -> None:
         """Until the person leaves: what is asked, what happens by itself, the clock. ``first`` is asked at once."""
-        self.tell(host.world())
-        host.left.report()
+        host.report()
         properties = host.properties()
         if properties:
             path = self.folder.path / "properties.npz"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the work of the hand goes: into the spring, into the contact, and, at the folds, into heat.
+"""Where the work of a hand goes that moves slowly: into the spring, into the contact, and, at the folds, into heat. A
+session sums the same over its ticks (libnanotouch/host/energy.c).
 
 The hand holds the far end of a spring K at the height z, the tip at the gap h stands at its near end: F = K (h - z).
 On the way the hand does the work W = -integral of F dz; the spring stores F^2/(2 K); the law takes U(h). Both balance
@@ -15,8 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 PANELS, ORDER = 400, 12  # of Gauss' quadrature over each stable piece of the law
-FORCE_Z = 6  # column of a row: stretch, place and force of the tip
-QUIET = 1e-3  # of the largest load: below this nothing is touched
 
 
 class Energies(NamedTuple):
@@ -30,99 +29,6 @@ class Energies(NamedTuple):
     """work at the tip: what the law has taken"""
     heat: float
     """lost where the tip has jumped"""
-
-
-class Balance:
-    """Sums over the frames of the last touch.
-
-    Between two ticks the work of the spring's force (their mean) on both of its ends is what it stores, exactly; what
-    the spring does on the tip and the law does not take has become motion, and then heat.
-    """
-
-    def __init__(self, spring: float, zero: float, alpha_p: float, load: float) -> None:
-        self.spring, self.zero, self.alpha_p, self.load = spring, zero, alpha_p, load
-        self.hand = self.tip = self.heat = self.began = self.now = 0.0
-        self.last: Any = None
-        self.tick = -1
-        self.free = self.whole = True
-        """whether nothing is touched; whether no tick of this touch was missed"""
-        self.shift = 0.0  # of the zero since the hand has let go [m]
-        self.stopped = False
-
-    def add(self, frames: Any) -> None:
-        """Frames in their order. Outside of RUN the supervisor moves the tip: the hand has let go, and takes hold anew
-        where the tip is then."""
-        runs = frames["state"] == 0
-        turns = np.flatnonzero(np.diff(runs)) + 1
-        for part in np.split(frames, turns):
-            if len(part) and part["state"][0] == 0:
-                self._hold(part)
-            elif len(part):
-                self.stopped, self.free, self.last, self.tick = True, True, None, -1
-
-    def _hold(self, frames: Any) -> None:
-        z_tip = frames["tip_position"][:, 2]
-        stretch = z_tip - (self.zero + self.shift - self.alpha_p * frames["master_position"][:, 2])
-        if self.stopped:
-            moved = stretch[0] - frames["tip_force"][0, 2] / self.spring
-            if not np.isfinite(moved):
-                return
-            self.shift, self.stopped, stretch = self.shift + float(moved), False, stretch - moved
-        rows = np.column_stack([stretch, frames["tip_position"], frames["tip_force"]])
-        known = np.isfinite(rows).all(axis=1)
-        rows, ticks = rows[known], frames["sequence"][known].astype(np.int64)
-        if not len(rows):
-            return
-        quiet = bool((np.abs(rows[:, FORCE_Z]) < QUIET * self.load).all())
-        if self.free and not quiet:  # a new touch
-            self.hand = self.tip = self.heat = 0.0
-            first = rows[0] if self.last is None else self.last
-            self.began = 0.5 * self.spring * float(first[0]) ** 2
-            self.whole = True
-        if self.last is not None:
-            rows = np.concatenate([[self.last], rows])
-        if not (self.free and quiet):
-            self._sum(rows)
-            self.whole &= bool((np.diff(ticks, prepend=self.tick if self.tick >= 0 else ticks[0] - 1) == 1).all())
-        self.free, self.last, self.tick = quiet, rows[-1], int(ticks[-1])
-
-    def _sum(self, rows: NDArray[np.float64]) -> None:
-        stretch, way, mean = rows[:, 0], np.diff(rows[:, 1:4], axis=0), 0.5 * (rows[1:, 4:] + rows[:-1, 4:])
-        pull = self.spring * 0.5 * (stretch[1:] + stretch[:-1])  # mean of the spring's force, + up on the hand
-        moved, law = way[:, 2], mean[:, 2]
-        sideways = float(np.sum(mean[:, :2] * way[:, :2]))
-        self.hand -= float(np.sum(pull * (moved - np.diff(stretch)))) + sideways
-        self.tip -= float(np.sum(law * moved)) + sideways
-        self.heat -= float(np.sum((pull - law) * moved))
-        self.now = 0.5 * self.spring * float(stretch[-1]) ** 2
-
-    @property
-    def energies(self) -> Energies:
-        """Of the last touch."""
-        return Energies(self.hand, self.now - self.began, self.tip, self.heat)
-
-
-class Spent:
-    """Of what the law takes in a touch, that which particles make heat of; all of it so far [J]."""
-
-    def __init__(self, now: float = 0.0) -> None:
-        self.now = self.before = now
-        self.of_touch = 0.0
-
-    def follow(self, touches: bool) -> None:
-        """Whether something is touched. After a rewind there is less of it."""
-        self.before = min(self.before, self.now)
-        if touches:
-            self.of_touch = self.now - self.before
-        else:
-            self.before = self.now
-
-    def counted(self, energies: Energies) -> Energies:
-        """As heat, and no longer as work at the tip."""
-        return energies._replace(tip=energies.tip - self.of_touch, heat=energies.heat + self.of_touch)
-
-
-# --- the same from the law alone, for a hand that moves slowly ---
 
 
 class Piece(NamedTuple):

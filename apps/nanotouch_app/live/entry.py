@@ -15,7 +15,7 @@ LONGEST = 24  # letters
 
 def value_of(slider: Slider, text: str) -> float:
     """What was typed for a slider, in SI units; :class:`InvalidValue` in words where it is no such quantity."""
-    unit = slider.about.unit
+    unit = slider.row.unit
     plain = text.replace(" ", "")
     if plain.endswith("%"):
         return parse_number(plain[:-1]) / 100.0
@@ -35,7 +35,7 @@ class Entry:
 
     def __init__(self, slider: Slider | None, asked: str = "") -> None:
         self.slider, self.text = slider, ""
-        self.label = asked if slider is None else f"{slider.name}, as {slider.told(slider.value)}"
+        self.label = asked if slider is None else f"{slider.name}, as {slider.row.told(slider.value)}"
 
     @property
     def shown(self) -> str:
@@ -58,5 +58,5 @@ class Entry:
         """What is asked of the host."""
         if self.slider is None:
             return {"do": "say", "text": self.text}
-        return {"do": "change", "what": self.slider.what, "field": self.slider.field,
+        return {"do": "change", "what": self.slider.row.what, "field": self.slider.row.field,
                 "value": value_of(self.slider, self.text)}  # fmt: skip

@@ -17,7 +17,7 @@ from nanotouch.units import in_words
 
 from nanotouch_app.common import surfaces
 from nanotouch_app.live import measured
-from nanotouch_app.live.subject import WINDOW_PRESETS, Subject, of_preset
+from nanotouch_app.live.subject import PRESETS, Subject, of_preset
 
 MOST_PIXELS = 1024  # of an image that is touched, to a side
 EXTENT = 25.0  # of the relief that is made for a scene, in radii of the tip
@@ -27,8 +27,8 @@ CURVE_TIP = 20e-9  # [m]; assumed, and told, where nobody gives the radius
 
 def check_named(what: str) -> None:
     """Refuse what is neither a file nor a preset."""
-    if what not in WINDOW_PRESETS and not Path(what).exists():
-        raise InvalidValue(f"{what}: neither a file nor a preset; presets are {', '.join(WINDOW_PRESETS)}")
+    if what not in PRESETS and not Path(what).exists():
+        raise InvalidValue(f"{what}: neither a file nor a preset; presets are {', '.join(PRESETS)}")
 
 
 def of(
@@ -39,7 +39,7 @@ def of(
     that measured a curve; ``named`` where more is said of an image. ``told`` is called with what is done now."""
     if named is not None:
         return of_surface(named, *nt.presets.silicon_in_air(), Path(what).stem)
-    if what in WINDOW_PRESETS:
+    if what in PRESETS:
         return of_preset(what)
     path = Path(what)
     check_named(what)

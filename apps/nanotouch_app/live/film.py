@@ -50,8 +50,7 @@ class Studio:
         if dark:
             self.picture.turn_light()
         self.host = Host(subject, self.picture.hear, stepped=True)
-        self.picture.hear(self.host.world())
-        self.host.left.report()
+        self.host.report()
         self.picture.stage.give(self.host.properties())
         self.look()
 

@@ -1,62 +1,85 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A session of another program as a hand needs to know it: what it says of itself, and how it is asked to move."""
+"""A hand on a session of another program: it is led as one of our own (host.h), and asks that program to move it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from types import SimpleNamespace
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch.touch.operator import Hold
+from nanotouch.touch import host
 
-from nanotouch_app.live.hand import Hand
 from nanotouch_app.live.reel import demand_of
 
 AIM, PATH, HAND = 1, 0, 1  # nt_event_kind of session.h, and its fields
 Post = Callable[[int, int, tuple[float, float, float, float]], Any]
 
 
-class Led:
-    """Takes the place of a :class:`~nanotouch.Session` in a :class:`~nanotouch_app.live.hand.Hand`."""
+class Hand:
+    """Begins where master and tip are."""
 
     def __init__(self, about: Mapping[str, Any], frame: Any, post: Post) -> None:
-        self.scene, self.rig = nt.Scene(**about["scene"]), nt.Rig(**about["rig"])
-        self.settings = nt.Settings(**about["settings"])
-        self.plan = self.scene.plan(demand_of(about))
-        self.path = [tuple(map(float, about["start"]))]
-        self.clearance = float(about["clearance"])
-        size = about.get("size")
-        self.surface = None if size is None else SimpleNamespace(size=size)
-        held = float(frame["master_position"][2])
-        self.core = SimpleNamespace(master_start=held, start_height=float(frame["tip_position"][2]))
-        self._post = post
+        scene, rig, settings = nt.Scene(**about["scene"]), nt.Rig(**about["rig"]), nt.Settings(**about["settings"])
+        self.post, self.scale = post, float(settings.gains.alpha_p)
+        self.start = tuple(map(float, about["start"]))
+        self.axes, self.stage_axes = int(rig.master.axes), int(rig.stage.axes)
+        self.proxy = host.Proxy(_facts(scene, rig, settings, about, frame))
+        x, y = (np.asarray(frame["tip_position"][:2]) - self.start) / self.scale
+        if self.axes == 3:
+            x, y = frame["master_position"][:2]
+        if self.stage_axes == 1:  # nothing moves it sideways
+            x, y = 0.0, 0.0
+            self.proxy.keep_sideways()
+        left, low = (float(part) if math.isfinite(part) else 0.0 for part in (x, y))
+        self.proxy.place = (left, low, self.proxy.place[2])
+        force = float(frame["tip_force"][2])
+        self.proxy.height -= force / self.proxy.stiffness if math.isfinite(force) else 0.0
 
-    def aim(self, to: Hold) -> None:
+    def answer(self, message: Mapping[str, Any], frame: Any) -> None:
+        """Move, wheel, press or retract."""
+        if message["do"] == "move":
+            self.proxy.move(tuple(map(float, message["way"])), frame)
+        elif message["do"] == "wheel":
+            self.proxy.wheel(float(message["steps"]), frame)
+        elif message.get("on", False):
+            self.proxy.presses = True
+        else:
+            self.proxy.lift(frame)
+        self._aim()
+
+    def follow(self, frame: Any, elapsed: float) -> None:
+        """What an arm does by itself."""
+        self.proxy.follow(frame, elapsed)
+        self._aim()
+
+    def _aim(self) -> None:
         """Ask for a place of the hand; of the tip, too, where the master does not lead it sideways."""
-        x, y, z = (float(part) for part in np.atleast_1d(to.master_position))
-        if self.rig.master.axes == 3.0:
-            self._post(AIM, HAND, (x, y, z, to.duration))
+        place = self.proxy.aim()
+        if place is None:
             return
-        self._post(AIM, HAND, (0.0, 0.0, z, to.duration))
-        if self.rig.stage.axes == 3.0:
-            scale = float(self.settings.gains.alpha_p)
-            self._post(AIM, PATH, (self.path[0][0] + scale * x, self.path[0][1] + scale * y, to.duration, 0.0))
+        x, y, z = place
+        if self.axes == 3:
+            self.post(AIM, HAND, (x, y, z, host.GLIDE))
+            return
+        self.post(AIM, HAND, (0.0, 0.0, z, host.GLIDE))
+        if self.stage_axes == 3:
+            left, low = self.start[0] + self.scale * x, self.start[1] + self.scale * y
+            self.post(AIM, PATH, (left, low, host.GLIDE, 0.0))
 
 
-def hand_of(about: Mapping[str, Any], frame: Any, post: Post) -> Hand:
-    """A hand that begins where master and tip are."""
-    led = Led(about, frame, post)
-    hand = Hand(led)
-    sideways = (np.asarray(frame["tip_position"][:2]) - led.path[0]) / led.settings.gains.alpha_p
-    if led.rig.master.axes == 3.0:
-        sideways = np.asarray(frame["master_position"][:2])
-    if led.rig.stage.axes == 1.0:  # nothing moves it sideways
-        sideways = np.zeros(2)
-        hand.ends[0][:2] = hand.ends[1][:2] = 0.0
-    hand.place[:2] = np.where(np.isfinite(sideways), sideways, 0.0)
-    force = float(frame["tip_force"][2])
-    hand.height -= force / hand.stiffness if math.isfinite(force) else 0.0
-    return hand
+def _facts(scene: nt.Scene, rig: nt.Rig, settings: nt.Settings, about: Mapping[str, Any], frame: Any) -> dict[str, Any]:
+    plan, gains = scene.plan(demand_of(about)), settings.gains
+    deepest, limit = float(plan.explain()["largest_indentation"]), float(settings.limits.force)
+    gaps = -np.linspace(0.0, 1.2, 400) * deepest
+    width, height = about.get("size") or (0.0, 0.0)
+    return {
+        "alpha_p": gains.alpha_p, "alpha_f": gains.alpha_f, "coupling": gains.coupling_stiffness,
+        "lever": rig.probe.spring_constant, "travel": rig.master.travel, "resolution": rig.master.resolution,
+        "axes": int(rig.master.axes), "clearance": float(about["clearance"]), "pull_off": plan.pull_off_force,
+        "load": scene.range.maximum_load, "limit": limit, "indentation": deepest,
+        "sunk": float(np.interp(host.LOAD * limit, plan.force(gaps, "retract"), -gaps)),
+        "start_height": float(frame["tip_position"][2]), "held": float(frame["master_position"][2]),
+        "x": float(about["start"][0]), "y": float(about["start"][1]), "width": width, "height": height,
+    }  # fmt: skip

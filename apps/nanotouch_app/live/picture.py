@@ -294,8 +294,9 @@ class Picture:
         slider = self.sliders.held or self.sliders.hovered
         if slider is None or self.reel is not None:
             return ""
-        ends = " to ".join(slider.told(value) for value in (slider.low, slider.high))
-        return f"{slider.about.doc} ({slider.field}): {ends}"
+        row = slider.row
+        ends = " to ".join(row.told(value) for value in (row.low, row.high))
+        return f"{row.doc} ({row.field}): {ends}"
 
 
 class _Item:

@@ -156,6 +156,11 @@ def _lower(palette: Palette, seen: Seen, about: str) -> tuple[str, Colour]:
     return str(seen.world.get("hint", "")), palette.quiet
 
 
+def known(value: float | None) -> float:
+    """JSON has no infinite number."""
+    return math.inf if value is None else float(value)
+
+
 def _facts(seen: Seen) -> str:
     radius = float(seen.reading["contact_radius"])
     gap = float(seen.reading["gap"])
@@ -165,9 +170,9 @@ def _facts(seen: Seen) -> str:
         touch = f"contact of {digits(radius, 'm')} radius"
     else:
         touch = f"apart by {digits(gap, 'm')}" if gap > 0.0 else f"pressed in by {digits(-gap, 'm')}"
-    bound = 100.0 * float(seen.world["bound"])
+    bound = 100.0 * known(seen.world["bound"])
     within = f"within {max(bound, 0.01):.2g} % (plan)" if math.isfinite(bound) else "no bound (plan)"
-    margin = float(seen.world["margin"])
+    margin = known(seen.world["margin"])
     told = "no loop closes through this hand" if not math.isfinite(margin) else f"margin {margin:.3g}"
     most, hand = float(seen.world["force"]), float(seen.world.get("hand", 0.0))
     pushed = f", {digits(hand, 'N')} at the hand" if hand > 0.0 else ""

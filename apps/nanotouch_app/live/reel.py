@@ -16,8 +16,6 @@ from nanotouch.plasticity import Dent, dents_of
 from nanotouch.touch.record import Recording
 from nanotouch.touch.replay import without_rewinds
 
-from nanotouch_app.live.left import keeps, told_of
-
 STEP = 1e-3  # of a single step [s]
 PIXELS = 256  # of the surface that is drawn, each way
 SPEEDS = (0.01, 0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
@@ -54,7 +52,7 @@ class Reel:
         self.frames = frames_of(recording)
         self.particles = particles_of(recording)
         self.dents: tuple[Dent, ...] = ()
-        self.keeps = keeps(nt.Scene(**recording.metadata["scene"]))
+        self.keeps = nt.Scene(**recording.metadata["scene"]).sample.dents == "yes"
         self.length = float(self.frames["time"][-1] - self.frames["time"][0])
         self.at, self.speed, self.paused = 0.0, 1.0, False
         self.looked = time.monotonic()
@@ -117,7 +115,8 @@ class Reel:
         tick = (self.frames["time"][0] + self.at) * self.recording.parameter("loop_rate")
         dents = dents_of([event for event in self.recording.metadata["events"] if event[0] <= tick])
         changed, self.dents = dents != self.dents, dents
-        return [told_of(dents)] if changed else []
+        rows = [[*dent.imprint, dent.load, -1 if dent.before is None else dent.before] for dent in dents]
+        return [{"tell": "dents", "dents": rows}] if changed else []
 
 
 def check_played(recording: Recording) -> None:

@@ -13,8 +13,7 @@ import nanotouch as nt
 from nanotouch.errors import Error
 from nanotouch.touch.commands import Answer
 
-from nanotouch_app.live.hand import Hand
-from nanotouch_app.live.led import hand_of
+from nanotouch_app.live.led import Hand
 from nanotouch_app.live.reel import world_of
 
 ARM, RESCALE, SETTING, SCENE = 2, 4, 6, 7  # nt_event_kind of session.h
@@ -84,16 +83,8 @@ class Remote:
             return
         self.lease.take()
         if self.hand is None:
-            self.hand = hand_of(self.world, frame, self._post)
-        if message["do"] == "move":
-            self.hand.move(message["way"], frame)
-        elif message["do"] == "wheel":
-            self.hand.presses = False
-            self.hand.step_down(message["steps"], frame)
-        else:
-            self.hand.presses = bool(message.get("on", False))
-            if not self.hand.presses:
-                self.hand.lift(frame)
+            self.hand = Hand(self.world, frame, self._post)
+        self.hand.answer(message, frame)
 
     def _post(self, kind: int, field: int, values: tuple[float, float, float, float]) -> None:
         self.asked[self.lease.client.post(kind, field, values)] = {"do": "move"}

@@ -16,7 +16,6 @@ from nanotouch.plasticity import Dent
 from numpy.typing import NDArray
 
 from nanotouch_app.live import dented
-from nanotouch_app.live.energy import Balance, Spent
 from nanotouch_app.live.hands.device import Feel
 from nanotouch_app.live.reel import Reel, demand_of
 
@@ -55,8 +54,6 @@ class Seen:
         self.notes: deque[tuple[float, str, bool]] = deque(maxlen=4)
         self.waiting: set[str] = set()
         self.task: dict[str, Any] = {}
-        self.balance: Balance | None = None
-        self.spent = Spent()
         self.dented: dented.Dented | None = None
         self.drawn_dent = (-1.0, -1.0)
         self.place: dict[str, float] = {}
@@ -90,7 +87,6 @@ class Seen:
             case "dents" if self.dented is not None:
                 self.dented.dents = tuple(Dent.from_numbers(numbers) for numbers in message["dents"])
             case "particles":
-                self.spent.now = message.get("heat", self.spent.now)
                 self.snaps += [(self.arrived, event) for event in message["events"]]
             case "task":
                 self.task = message if message["name"] else {}
@@ -117,7 +113,6 @@ class Seen:
         fresh = {key: world[key] for key in ("scene", "rig")} != {key: self.world.get(key) for key in ("scene", "rig")}
         self.world = world
         self.waiting.clear()
-        self._weigh()
         if not fresh:
             return
         self._plan_for(nt.Scene(**world["scene"]))
@@ -159,16 +154,6 @@ class Seen:
             self.depth = self.dented.relief
         self.drawn_dent = (-1.0, -1.0)
 
-    def _weigh(self) -> None:
-        """Where the work goes, of a hand whose place is known; anew when its spring has changed."""
-        about, gains = self.world, self.world["settings"]["gains"]
-        if about.get("zero") is None:
-            self.balance = None
-            return
-        key = (float(about["stiffness"]), float(about["zero"]), float(gains["alpha_p"]))
-        if self.balance is None or key != (self.balance.spring, self.balance.zero, self.balance.alpha_p):
-            self.balance = Balance(*key, float(about["scene"]["range"]["maximum_load"]))
-
     def look(self, observer: nt.frames.Observer | Reel) -> None:
         """Take the frames that have come since."""
         frames = observer.read()
@@ -183,9 +168,6 @@ class Seen:
             self.forget()
         self._keep(frames)
         self._yield(frames)
-        if self.balance is not None:
-            self.balance.add(frames)
-            self.spent.follow(not self.balance.free)
         self.frame = frames[-1]
         if now - self.read_at > READINGS:
             self.read_at, self.reading = now, self.frame
@@ -222,10 +204,6 @@ class Seen:
         """What came before belongs to another time."""
         for kept in (self.slices, self.tail, self.trace):
             kept.clear()
-        if self.balance is not None:
-            self.balance = Balance(self.balance.spring, self.balance.zero, self.balance.alpha_p, self.balance.load)
-            self.spent = Spent(self.spent.now)
-            self.balance.stopped = True  # where the hand has hold now, the frames say
 
     def _keep(self, frames: Any) -> None:
         force = frames["tip_force"][:, 2]

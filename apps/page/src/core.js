@@ -65,6 +65,26 @@ export class Core {
     }
   }
 
+  // Texts during a call, as an array of pointers to them.
+  withTexts(texts, call) {
+    const bytes = texts.map((one) => new TextEncoder().encode(`${one}\0`)), head = 4 * texts.length;
+    const at = this.c.page_alloc(head + bytes.reduce((sum, one) => sum + one.length, 0));
+    if (!at) throw new Refused("out of memory");
+    try {
+      let place = at + head;
+      bytes.forEach((one, i) => {
+        new DataView(this.c.memory.buffer).setUint32(at + 4 * i, place, true);
+        new Uint8Array(this.c.memory.buffer).set(one, place);
+        place += one.length;
+      });
+      return call(at);
+    } finally {
+      this.c.page_free(at);
+    }
+  }
+
+  pointer(at) { return new DataView(this.c.memory.buffer).getUint32(at, true); }
+
   #table(kind) {
     const rows = [];
     for (let i = 0; i < this.c.page_field_count(kind); ++i) {

@@ -43,13 +43,13 @@ export class Drop {
 
   #lay(title, { scene, rig, map, hint }) {
     this.words.close();
-    this.link.ask({ do: "lay", subject: { name: "", title, felt: "", hint: hint ?? "", scene, rig, map } });
+    this.link.ask({ do: "lay", subject: { name: "", title, hint: hint ?? "", scene, rig, map } });
   }
 
-  #usual(name = "silicon_in_air") { return this.table.presets.find((preset) => preset.name === name); }
+  #usual(name = this.table.presets[0].name) { return this.table.presets.find((preset) => preset.name === name); }
 
   // TOML over a preset's scene; its own surface is a gentle relief.
-  scene(text, title, preset = "silicon_in_air") {
+  scene(text, title, preset) {
     const usual = this.#usual(preset) ?? this.#usual(), read = fromToml(text, this.state.fields, this.table.units);
     const scene = laidOver(usual.scene, read.scene), { radius } = scene.tip, size = Math.max(500e-9, 15 * radius);
     this.#lay(title, { scene, rig: laidOver(usual.rig, read.rig), map: relief(size, 0.012 * size) });
@@ -57,7 +57,7 @@ export class Drop {
 
   async #image(file) {
     const map = await readImage(file), { scene, rig } = this.#usual();
-    const lay = (made) => this.#lay(file.name, { scene, rig, map: made, hint: "Your own surface, as silicon in air." });
+    const lay = (made) => this.#lay(file.name, { scene, rig, map: made, hint: `Your own surface, as ${this.#usual().title}.` });
     if (map.of && map.of !== "heights") return this.#property(file.name, map);
     if (!map.asks) return lay(map);
     const length = (text) => parseQuantity(text, "m", this.table.units);
@@ -93,7 +93,7 @@ export class Drop {
     const rows = made.found.filter(([name]) => name in unit).map(([name, value]) => [name, name === "ruptures" ? `${value}` : digits(value, unit[name])]);
     rows.push([`effective modulus (Hertz, R = ${USUAL_RADIUS})`, digits(made.modulus, "Pa")]);
     this.words.form(`${file.name}: what the curve shows`, [this.words.facts(rows)], [["radius", "radius of the tip", USUAL_RADIUS],
-      ["spring", "spring constant", Number.isFinite(made.springConstant) ? `${made.springConstant} N/m` : ""]], again);
+      ["spring", "stiffness of the lever", Number.isFinite(made.springConstant) ? `${made.springConstant} N/m` : ""]], again);
   }
 
   async #tried(act) {

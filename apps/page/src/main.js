@@ -17,6 +17,7 @@ import { byId, Words } from "./words.js";
 
 const FRAMED = "nanotouch-framed"; // the name of a frame in a notebook
 const table = JSON.parse(byId("table").textContent);
+const FIRST = table.presets[0].name; // where nothing is named
 const fragment = (() => {
   try {
     return fromFragment(location.hash);
@@ -76,8 +77,9 @@ function hear(message) {
     lay(message.surface);
   }
   if (message.tell === "particles" && stage.grid) stage.balls.show(message, stage.grid);
+  if (message.tell === "sliders") sliders.lay(message.sliders);
   if (message.tell === "world") {
-    if (state.fields) sliders.take(message, state.fields);
+    sliders.take(message);
     stage.mount(message.scene.tip);
     if (task && state.own) ask({ do: "task", name: task, lay: true });
     task = null;
@@ -85,7 +87,7 @@ function hear(message) {
   if (message.tell === "granted" && !message.operates) seen.note("You watch: another one holds the hand.", false);
   if (message.tell === "refused") {
     sliders.refused(message.field);
-    if (state.given) ask({ do: "preset", name: "silicon_in_air" }); // what the link names cannot be opened
+    if (state.given) ask({ do: "preset", name: FIRST }); // what the link names cannot be opened
     state.given = false;
   }
   dirty = true;
@@ -95,15 +97,13 @@ function hear(message) {
 function lay(surface) {
   stage.lay(surface);
   contact.forget();
-  sliders.forget();
 }
 
 // The library is there: the first sample, or what the link says.
 function begin({ fields }) {
   state.fields = fields;
-  if (seen.world) sliders.take(seen.world, fields);
   if (!state.own) return;
-  const preset = fragment.get("preset") ?? "silicon_in_air", scene = fragment.get("scene");
+  const preset = fragment.get("preset") ?? FIRST, scene = fragment.get("scene");
   let laid = false;
   try {
     if (fragment.has("wrong")) throw new Error(fragment.get("wrong"));
@@ -115,8 +115,8 @@ function begin({ fields }) {
     seen.note(`the scene of this link is refused: ${error.message}`, true);
   }
   const known = table.presets.some((one) => one.name === preset);
-  if (!known) seen.note(`there is no sample ${preset.slice(0, 40)}: this is silicon in air`, true);
-  if (!laid) ask({ do: "preset", name: known ? preset : "silicon_in_air" });
+  if (!known) seen.note(`there is no sample ${preset.slice(0, 40)}: this is ${table.presets[0].title}`, true);
+  if (!laid) ask({ do: "preset", name: known ? preset : FIRST });
   if (!served && fragment.get("key")) seen.note("a key opens a running session where its link leads; this is the page alone", true);
 }
 
@@ -177,7 +177,7 @@ function taken(text) {
 }
 
 async function copyLink(text) {
-  const parts = new URLSearchParams({ preset: seen.world.preset || "silicon_in_air" });
+  const parts = new URLSearchParams({ preset: seen.world.preset || FIRST });
   if (text.trim()) parts.set("scene", text);
   location.hash = parts.toString();
   try {

@@ -65,6 +65,7 @@ export function relief(size, height, pixels = 128) {
 export async function ofPreset(table, name) {
   const found = table.presets.find((preset) => preset.name === name);
   if (!found) throw new Error(`preset ${name}: there are ${table.presets.map((one) => one.name).join(", ")}`);
-  return { name, title: found.title, felt: found.felt, hint: found.hint, scene: structuredClone(found.scene),
-    rig: structuredClone(found.rig), accuracy: found.accuracy, particles: found.particles, map: await unpack(found.surface) };
+  return { name, title: found.title, hint: found.hint, scene: structuredClone(found.scene),
+    rig: structuredClone(found.rig), accuracy: found.accuracy, pushed: found.pushed,
+    particles: found.particles, rod: found.rod, map: await unpack(found.surface) };
 }

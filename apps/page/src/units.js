@@ -20,14 +20,6 @@ export function digits(value, unit, count = 3) {
   return `${scaled.toFixed(Math.min(decimals, count))} ${prefixed}`.trim();
 }
 
-// The value of a field in words, with its unit (Slider.told of live/sliders.py).
-export function quantity(field, unit, value) {
-  if (field.endsWith("humidity")) return `${(100 * value).toFixed(0)} %`;
-  const rounded = (scale) => Number((value / scale).toPrecision(3));
-  if (unit === "N/N") return value >= 1e9 ? `${rounded(1e9)} billion` : `${rounded(1e6)} million`;
-  return digits(value, unit).replace("^2", "²").replace("^3", "³");
-}
-
 export function stepUp(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= value * (1 - 1e-9));

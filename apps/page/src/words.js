@@ -75,7 +75,7 @@ export class Words {
       return;
     }
     board.dataset.task = task.name;
-    const score = "score" in task && !task.name.startsWith("lesson")
+    const score = task.scored
       ? [element("p", { textContent: `${task.passed ? "passed" : "not passed"}, ${task.score.toFixed(0)} of 100` })] : [];
     board.replaceChildren(element("h2", { textContent: task.title }), ...score, element("p", { textContent: task.words }),
       element("p", { textContent: task.now, className: "now quiet" }), this.#choices(task.choices), ...this.#answer(task), ...this.#saved(task),
@@ -137,7 +137,7 @@ export class Words {
 
   tasks() {
     const begin = (name) => () => { this.close(); this.ask({ do: "task", name, lay: true }); };
-    const all = [...this.table.tasks.map(({ name, title }) => [name, title]), ["lesson", "Lesson: predict, touch, explain"], ["", "No task"]];
+    const all = [...this.table.tasks.filter((one) => !one.is_page).map(({ name, title }) => [name, title]), ["", "No task"]];
     this.#sheet("t", element("h2", { textContent: "What to learn" }), element("div", { className: "choices" },
       ...all.map(([name, words]) => element("button", { textContent: words, onclick: begin(name) }))));
   }

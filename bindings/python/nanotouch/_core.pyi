@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from nanotouch._frames import *  # noqa: F403
 from nanotouch._friction import *  # noqa: F403
+from nanotouch._host import *  # noqa: F403
 from nanotouch._margins import *  # noqa: F403
 from nanotouch._particle import *  # noqa: F403
 from nanotouch._plasticity import *  # noqa: F403

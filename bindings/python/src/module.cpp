@@ -3,6 +3,8 @@
 #include "chapters.h"
 #include "nanotouch/version.h"
 
+void bind_host(py::module_ &module);
+
 PYBIND11_MODULE(_core, module)
 {
     module.doc() = "The C library of nanotouch. Use the Python modules of the package; this one has no promises.";
@@ -37,6 +39,7 @@ PYBIND11_MODULE(_core, module)
     bind_session(module);
     bind_frames(module);
     bind_commands(module);
+    bind_host(module);
 #ifdef NANOTOUCH_HAS_LINUX
     bind_linux(module);
 #endif

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * State in words, computed from state: a change of any field changes them. */
+#include <math.h>
+
+#include "host/state.h"
+
+static const double HOLDS = 1e-3; /* of the max load: a weaker pull-off is none */
+
+void nt_line_felt(const nt_session_host *host, nt_text *text)
+{
+    const nt_session_setup *setup = nt_session_setup_of(host->session);
+    const nt_plan *plan = &host->plan;
+    const double load = setup->scene.range.maximum_load, pull = plan->pull_off_force;
+    const nt_figure figures[] = {{"what", 0.0, NULL, plan->source == NT_ADHESION_MENISCUS ? "water" : "the sample"},
+                                 {"pull", pull, "N", 0},
+                                 {"felt", pull * setup->settings.gains.alpha_f, "N", 0},
+                                 {"depth", plan->largest_indentation, "m", 0},
+                                 {"load", load, "N", 0},
+                                 {"stiffness", plan->maximum_stiffness, "N/m", 0},
+                                 {0}};
+    if (host->said[0]) {
+        nt_text_add(text, host->said);
+        nt_text_add(text, " ");
+    }
+    nt_text_fill(text, pull > HOLDS * load ? "{what} holds with {pull}, {felt} at your hand; " : "nothing holds it; ",
+                 figures);
+    nt_text_fill(text, "{depth} deep and {stiffness} stiff under {load}", figures);
+}
