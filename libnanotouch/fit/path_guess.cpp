@@ -25,7 +25,7 @@ double power_of(nt_shape_kind kind)
     return kind == NT_SHAPE_CONE ? 2.0 : kind == NT_SHAPE_PUNCH ? 1.0 : 1.5;
 }
 
-// Means of neighbours on the way to the deepest position.
+// Means of neighbours on the way to the deepest position of the first movement.
 struct Approach {
     std::vector<double> position, force;
     double noise;
@@ -33,7 +33,8 @@ struct Approach {
 
 Approach approach_of(const nt_fit_path_options &options, const nt_fit_path &path, const std::vector<double> &position)
 {
-    const long deepest = std::max_element(position.begin(), position.end()) - position.begin();
+    const auto last = path.segments > 1 ? position.begin() + path.starts[1] : position.end();
+    const long deepest = std::max_element(position.begin(), last) - position.begin();
     const long size = std::max<long>(1, (deepest + 1) / parts);
     Approach approach{{}, {}, options.noise / std::sqrt(double(size))};
     for (long i = 0; i + size <= deepest + 1; i += size) {

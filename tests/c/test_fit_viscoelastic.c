@@ -70,6 +70,26 @@ static void test_gives_its_own_law_back(void **state)
         assert_true(i == BRANCH || fabs(fitted[i] - forces[i]) < 1e-5 * found.peak); /* the turn has no speed */
 }
 
+/* Drag that falls with the height h over first touch as 1/(1 + h/h_d). */
+static void test_drag_depends_on_the_height(void **state)
+{
+    (void)state;
+    nt_fit_path_options options = options_of();
+    make(&options.contact, 0.0);
+    options.drag_height = 5e-7;
+    for (int i = 0; i < POINTS; i++) {
+        const double speed = i < BRANCH ? 2e-6 : -2e-6, height = fmax(-positions[i], 0.0);
+        forces[i] += 4e-6 * speed / (1.0 + height / 5e-7);
+    }
+    for (int i = 0; i < POINTS; i++) /* without what make() put in */
+        forces[i] -= 1e-6 * (i < BRANCH ? 2e-6 : -2e-6);
+    const nt_fit_path path = path_of();
+    nt_fit_path_result found;
+    assert_int_equal(nt_fit_path_run(&options, &path, &found, NULL), NT_OK);
+    assert_true(fabs(found.value[NT_FIT_PATH_DRAG] / 4e-6 - 1.0) < 1e-3);
+    assert_true(fabs(found.value[1] - options.contact.rheology.exponent) < 1e-5);
+}
+
 static void test_an_elastic_sample_stays_at_the_floor(void **state)
 {
     (void)state;
@@ -118,6 +138,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gives_its_own_law_back),
+        cmocka_unit_test(test_drag_depends_on_the_height),
         cmocka_unit_test(test_an_elastic_sample_stays_at_the_floor),
         cmocka_unit_test(test_arguments),
     };

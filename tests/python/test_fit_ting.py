@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
 
 import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import fit
+from nanotouch.batch.methods import methods
 from nanotouch.curves import ForceCurve, Segment
 from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.fit.unified import unified_interval
@@ -66,36 +71,41 @@ def test_drag_is_told_from_the_sample() -> None:
     assert found.values["exponent"] == pytest.approx(0.2, abs=5 * found.sigma["exponent"])
 
 
-def with_pause(kernel, exponent: float, points: int = 40) -> ForceCurve:
-    """Down in a second, half a second at rest, back: forces by quadrature for an indentation in straight lines."""
-    speed, depth = 1e-6, 1e-6
-    time = np.concatenate([np.linspace(0.0, 1.0, points + 1), 1.0 + np.linspace(0.0, 0.5, points + 1)[1:],
-                           1.5 + np.linspace(0.0, 1.0, points + 1)[1:]])  # fmt: skip
-    indentation = np.interp(time, [0.0, 1.0, 1.5, 2.5], [0.0, depth, depth, 0.0])
+def with_pause(
+    kernel: Callable[[np.ndarray], np.ndarray],
+    exponent: float,
+    points: int = 40,
+    *,
+    corners: tuple[float, ...] = (0.0, 1.0, 1.5, 2.5),
+    depths: tuple[float, ...] = (0.0, 1e-6, 1e-6, 0.0),
+    roles: tuple[str, ...] = ("approach", "pause", "retract"),
+    noise: float = 1e-14,
+) -> ForceCurve:
+    """Forces by quadrature for an indentation in straight lines between corners, by default a second down, half a
+    second at rest, and back."""
+    ends = np.array(corners)
+    time = np.concatenate([np.linspace(a, b, points + 1)[i > 0 :] for i, (a, b) in enumerate(pairwise(ends))])
+    indentation = np.interp(time, ends, depths)
 
     def slope(delta: np.ndarray) -> np.ndarray:
         return 2.0 * np.sqrt(RADIUS * delta)
 
-    corners = np.array([0.0, 1.0, 1.5, 2.5])
-
-    def at(now: float) -> float:  # three straight pieces at most
-        times = np.append(corners[corners < now], now)
-        depths = np.interp(times, time, indentation)
-        return quadrature(kernel, exponent, slope, times, depths, times.size - 1)
+    def at(now: float) -> float:  # a few straight pieces
+        times = np.append(ends[ends < now], now)
+        return quadrature(kernel, exponent, slope, times, np.interp(times, ends, depths), times.size - 1)
 
     forces = [0.0] + [at(now) for now in time[1:]]
-    free = np.arange(1, points + 1) / points
+    free, speed = ends[1] * np.arange(1, points + 1) / points, depths[1] / ends[1]
     force = np.concatenate([0.0 * free, np.array(forces) / (1 - POISSON**2), 0.0 * free])
-    depths = np.concatenate([-speed * free[::-1], indentation, -speed * free])
-    time = np.concatenate([-free[::-1], time, 2.5 + free])
-    z = -(depths + force / STIFFNESS)
-    force = force + 1e-14 * np.random.default_rng(1).normal(size=force.size)
-    ends = [0, 2 * points + 1, 3 * points + 1, time.size]
-    roles = ("approach", "pause", "retract")
+    depth = np.concatenate([-speed * free[::-1], indentation, -speed * free])
+    time = np.concatenate([-free[::-1], time, ends[-1] + free]) + free[-1]
+    z = -(depth + force / STIFFNESS)
+    force = force + noise * np.random.default_rng(1).normal(size=force.size)
+    turns = [0, *(points * (i + 2) + 1 for i in range(len(roles) - 1)), time.size]
     return ForceCurve(
         tuple(
-            Segment(role, (time + 1.0)[a:b], z[a:b], "height (measured)", force[a:b], force[a:b] / STIFFNESS)
-            for role, a, b in zip(roles, ends[:-1], ends[1:], strict=True)
+            Segment(role, time[a:b], z[a:b], "height (measured)", force[a:b], force[a:b] / STIFFNESS)
+            for role, (a, b) in zip(roles, pairwise(turns), strict=True)
         ),
         {"spring constant": STIFFNESS, "sensitivity": 5e-8},
         "with a pause",
@@ -177,6 +187,20 @@ def test_what_does_not_go_together_is_refused(changes: dict, words: str) -> None
         fit.fit_curve(curve, model, **(HERE | changes))
 
 
+# Two steps down, a rest at each; by quadrature. 0.3 % of F_max is its noise.
+def test_an_approach_that_pauses() -> None:
+    corners, depths = (0.0, 0.3, 0.8, 1.2, 1.5, 2.5), (0.0, 4e-7, 4e-7, 8e-7, 8e-7, 0.0)
+    roles = ("approach", "pause", "approach", "pause", "retract")
+    curve = with_pause(lambda t: 2e3 * t**-0.3, 0.3, corners=corners, depths=depths, roles=roles, noise=5e-12)
+    found = fit.fit_curve(curve, "ting_power", **HERE)
+    assert found.status == "ok"
+    assert found.values["youngs_modulus"] == pytest.approx(2e3, rel=5e-3)
+    assert found.values["exponent"] == pytest.approx(0.3, abs=3e-3)
+    assert len(fit.pauses(curve, found)) == 2
+    elastic = fit.fit_curve(curve, "hertz", radius=RADIUS, poisson_ratio=POISSON)
+    assert "relaxes" in elastic.reason
+
+
 # Closed forms: E J = sin(pi beta)/(pi beta) of a power law.
 def test_a_pause_shows_relaxation_and_creep() -> None:
     curve = with_pause(lambda t: 2e3 * t**-0.3, 0.3)
@@ -250,6 +274,21 @@ def test_map_of_the_exponent_beside_the_modulus() -> None:
     assert np.all((low <= [0.0, 0.1, 0.2]) & (high >= [0.0, 0.1, 0.2]))
     with pytest.raises(InvalidValue, match="array has no times"):
         nt.maps.fit(np.zeros((1, 1, 40)), "ting_power", z=np.linspace(1e-6, 0, 40), spring_constant=0.1, radius=RADIUS)
+
+
+def test_tables_and_methods_have_the_exponent(tmp_path: Path) -> None:
+    pytest.importorskip("h5py")
+    curves = [curve_of(Sample(2e3, 0.1 * (i + 1)), 400, noise=1e-11, seed=i) for i in range(3)]
+    for i, curve in enumerate(curves):
+        nt.curves.write(tmp_path / f"{i}.h5", [curve])
+    summary = nt.batch.fit_files([tmp_path], tmp_path / "r.csv", "ting_power", radius=RADIUS, poisson_ratio=POISSON)
+    rows = list(csv.DictReader((tmp_path / "r.csv").read_text().splitlines()))
+    assert [float(row["exponent"]) for row in rows] == pytest.approx([0.1, 0.2, 0.3], abs=0.005)
+    assert all(float(row["exponent low"]) < float(row["exponent"]) < float(row["exponent high"]) for row in rows)
+    assert [found.quantity for found in summary.spreads][-1] == "exponent"
+    assert "the whole curve" in (said := methods(summary.rows, {"model": "ting_power"}, {}))
+    assert "Ting's (1966)" in said
+    assert "law, power law on the whole curve" in said
 
 
 def test_curves_that_cannot_be_fitted_say_why() -> None:

@@ -21,7 +21,10 @@ from nanotouch_app.common.quantity import whole_number
 from nanotouch_app.data import fit
 
 FILES = ("map.nc", "map.png", "map.json")
-SHOWN = ("effective_modulus", "youngs_modulus", "work_of_adhesion", "pull_off_force", "adhesion_work", "contact_point")
+SHOWN = (
+    "effective_modulus", "youngs_modulus", "exponent", "relaxation_time", "work_of_adhesion", "pull_off_force",
+    "adhesion_work", "contact_point",
+)  # fmt: skip
 
 
 def add_parser(subparsers: Any) -> None:

@@ -22,7 +22,7 @@ from .reporting import Sample, Tip, make_result
 from .result import FitResult
 from .show import with_sigma
 from .solving import Setup, solve
-from .ting import DRAG_HEIGHT, Law, noise_of, track_of
+from .ting import DRAG_HEIGHT, Law, noise_of, report_of, track_of
 from .uncertainties import Uncertainties
 from .whole import Whole, fit_whole
 
@@ -211,23 +211,23 @@ def _over_time(curve: ForceCurve, model: Model, size: TipSize, given: Given, ass
     if given.branch == "retract":
         raise InvalidValue(f"model {model.name!r} is fitted to the whole curve, or to the approach alone")
     assert curve.spring_constant is not None
-    held = given.held
+    held, report = given.held, report_of(curve, given.report)
     law = Law(
         model=model,
         radius=_radius(model, size.tip, size.radius, assumptions),
         half_angle=_half_angle(model, size.half_angle, assumptions),
         thickness=layer_of(model, size.thickness, given.poisson_ratio, held).get("thickness", 0.0),
         spring_constant=curve.spring_constant,
-        noise=noise_of(given.report),
+        noise=noise_of(report),
         drag_height=held.pop(DRAG_HEIGHT, 0.0),
         held=held,
     )
     law.check_names(extension())
-    track = track_of(curve, given.report, approach_only=given.branch == "approach", window=given.window)
+    track = track_of(curve, report, approach_only=given.branch == "approach", window=given.window)
     known, sharp = size.tip is not None or size.radius is not None, model.sides is not None
     assumptions += given.uncertainties.assumptions(sharp=sharp, layer=law.thickness > 0.0)
     told = Tip("", known, size.half_angle is None if sharp else not known)
-    return fit_whole(Whole(curve, given.report, law, track), given.uncertainties,
+    return fit_whole(Whole(curve, report, law, track), given.uncertainties,
                      Sample(given.poisson_ratio, size.tip), assumptions, told)  # fmt: skip
 
 

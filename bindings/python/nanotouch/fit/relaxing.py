@@ -16,7 +16,7 @@ from .models import extension
 from .over_time import OVER_TIME, TIPS
 from .show import with_sigma
 from .solving import AboutTime, Setup
-from .ting import Law, noise_of, solve, track_of
+from .ting import Law, noise_of, report_of, solve, track_of
 
 LOOP = 0.03  # of the work of the approach, from where the branches differ
 CERTAIN = 5.0  # standard deviations of that, and three of the exponent
@@ -44,6 +44,7 @@ def loop_of(report: CurveReport) -> tuple[float, float]:
 
 def relaxing(curve: ForceCurve, report: CurveReport, setup: Setup) -> AboutTime | None:
     """What the loop between the branches says; None where adhesion would make one, and where there are no two."""
+    report = report_of(curve, report)
     if not {"approach", "retract"} <= report.branches.keys() or report.snap_in_force > 0.0:
         return None
     name = _like(setup)

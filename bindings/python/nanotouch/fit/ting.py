@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch.contact.geometry import KINDS
-from nanotouch.curves import CurveReport, ForceCurve
+from nanotouch.curves import CurveReport, ForceCurve, analyse
 from nanotouch.curves.flicker import point_noise
 from nanotouch.errors import InvalidValue
 from nanotouch.rheology import KINDS_OF_KERNEL
@@ -134,6 +134,16 @@ class Found(NamedTuple):
     def rms(self, track: Track) -> float:
         """Of the residuals of the points that were fitted [N]."""
         return float(np.sqrt(np.mean((track.force - self.fitted)[track.fitted] ** 2)))
+
+
+def report_of(curve: ForceCurve, report: CurveReport) -> CurveReport:
+    """Of the first movement and the last, where pauses interrupt the approach: the force that relaxes in them would
+    look like a bent baseline."""
+    parts = curve.parts("approach")
+    if len(parts) < 2 or len(parts[0]) < _FEWEST:
+        return report
+    ends = [part for part in (parts[0], *curve.parts("retract")[-1:]) if len(part) >= _FEWEST]
+    return analyse(ForceCurve(tuple(ends), curve.meta, curve.name))
 
 
 def track_of(curve: ForceCurve, report: CurveReport, *, approach_only: bool, window: Window | None) -> Track:
