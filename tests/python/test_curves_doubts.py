@@ -154,7 +154,7 @@ def test_an_asylum_note_that_does_not_fit_is_told(tmp_path: Path) -> None:
     pytest.importorskip("igor2")
     (found,) = curves.read(asylum(tmp_path / "a.ibw", "0,5000,9000"))
     assert "do not fit 2200 points" in found.meta["notes"][0]
-    assert [segment.role for segment in found.segments] == ["approach", "retract"]
+    assert [segment.role for segment in found.segments] == ["approach", "pause", "retract"]  # as z goes
 
 
 def test_what_follows_from_the_calibration_is_computed_from_it(tmp_path: Path) -> None:

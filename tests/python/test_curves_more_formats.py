@@ -241,3 +241,32 @@ def test_real_files() -> None:
         spectrum.frequency[near], spectrum.density[near], averages=50, temperature=298.0, correction=1.0
     )
     assert tune.resonance == pytest.approx(24.25e3, rel=0.15)  # the instrument's own fit
+
+
+def asylum(path: Path, dwell: int, facts: dict[str, object]) -> Path:
+    """Down, a dwell with the noise of a sensor, and back."""
+    way, bent = np.linspace(1e-6, 0.0, 300), np.linspace(0.0, 1e-8, 300)
+    rest = 1e-11 * np.random.default_rng(3).standard_normal(dwell)
+    z, deflection = np.concatenate([way, rest, way[::-1]]), np.concatenate([bent, np.full(dwell, 1e-8), bent[::-1]])
+    note = {"InvOLS": 5e-8, "SpringConstant": 0.1} | facts
+    return synthetic.write_ibw(path, np.stack([-z, deflection, -z], axis=-1), ["Raw", "Defl", "ZSnsr"], note=note)
+
+
+@pytest.mark.parametrize("facts", [{}, {"Indexes": "0,150,719,"}, {"Indexes": "0,299,719,", "DwellTime": 0.2}])
+def test_a_dwell_of_an_asylum_curve_is_a_pause_whatever_its_note_says(facts: dict[str, object], tmp_path: Path) -> None:
+    """It was part of the approach or of the retraction. Indexes that z contradicts were believed."""
+    (curve,) = curves.read(asylum(tmp_path / "a.ibw", 120, facts))
+    assert [segment.role for segment in curve.segments] == ["approach", "pause", "retract"]
+    assert [len(segment) for segment in curve.segments] == pytest.approx([300, 120, 300], abs=4)
+    if "Indexes" in facts:
+        assert any("contradict z" in note for note in curve.meta["notes"])
+
+
+def test_a_turn_without_a_dwell_is_no_pause(tmp_path: Path) -> None:
+    (curve,) = curves.read(asylum(tmp_path / "a.ibw", 0, {}))
+    assert [len(segment) for segment in curve.segments] == pytest.approx([300, 300], abs=1)
+    z = -0.5e-6 * (1.0 - np.cos(np.linspace(0.0, 2.0 * np.pi, 800)))  # as PeakForce moves
+    wave = np.stack([-z, 0.0 * z, -z], axis=-1)
+    path = synthetic.write_ibw(tmp_path / "b.ibw", wave, ["Raw", "Defl", "ZSnsr"], note={"InvOLS": 5e-8, "SpringConstant": 0.1})
+    (curve,) = curves.read(path)
+    assert [segment.role for segment in curve.segments] == ["approach", "retract"]

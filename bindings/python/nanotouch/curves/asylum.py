@@ -2,9 +2,9 @@
 """Asylum force curves in one Igor binary wave: columns ``Raw``, ``Defl``, ``ZSnsr`` [m], and a note.
 
 The travel of the base grows towards the sample, so z is its negative. The note says with ``Indexes`` where the
-movements end and with ``Direction`` what they are: 1 towards the sample, 0 a dwell, -1 away. Where it does not, the
-curve is cut at its deepest point. Nothing in the note is needed to read the curve but what turns deflections into
-forces.
+movements end and with ``Direction`` what they are: 1 towards the sample, 0 a dwell, -1 away. Where it does not, or z
+contradicts it, the curve is cut at its deepest point, or where it rests there. Nothing in the note is needed to read
+the curve but what turns deflections into forces.
 """
 
 from __future__ import annotations
@@ -37,6 +37,8 @@ _NUMBERS = {"NumPtsPerSec": ("rate approach", "rate retract"), "InputTime": ("du
 _TEXTS = {"MicroscopeModel": "instrument", "Version": "software version", "Date": "date", "Time": "time"}
 _SHAPE = 64 + 68  # where a wave of version 5 says it [byte]
 _REST = 0.1  # of the travel; a movement over less is a pause
+_TURN = 0.01  # of the travel, where the base turns
+_DWELL = 0.2  # of the points of the shorter way; more than so many there are a dwell
 _ROLES: Mapping[int, Role] = {1: "approach", 0: "pause", -1: "retract"}
 
 
@@ -166,12 +168,44 @@ def _parts(note: str, z: Floats, known: NDArray[np.bool_], notes: list[str]) -> 
         ends = []
     edges = sorted({min(end + (number > 0), z.size) for number, end in enumerate(ends)} | {0, z.size})
     runs = [slice(a, b) for a, b in pairwise(edges)]
+    if len(runs) > 1 and _contradicts(runs, z, known):
+        notes.append(f"the note's Indexes ({text_of(note, 'Indexes')}) contradict z: cut at the deepest")
+        runs = [slice(0, z.size)]
     if len(runs) == 1:
-        deepest = int(np.argmin(np.where(known, z, np.inf))) + 1
-        cut = [0, deepest, z.size] if MIN_POINTS <= deepest <= z.size - MIN_POINTS else [0, z.size]
-        return [(slice(a, b), None) for a, b in pairwise(cut) if known[a:b].any()]
+        cuts = _dwell_of(z, known) or (int(np.argmin(np.where(known, z, np.inf))) + 1,)
+        edges = [0, *cuts, z.size] if cuts[0] >= MIN_POINTS and cuts[-1] <= z.size - MIN_POINTS else [0, z.size]
+        return [(slice(a, b), None) for a, b in pairwise(edges) if known[a:b].any()]
     told = directions if len(directions) == len(runs) else [None] * len(runs)
     return [(run, way) for run, way in zip(runs, told, strict=True) if known[run].any()]
+
+
+def _contradicts(runs: list[slice], z: Floats, known: NDArray[np.bool_]) -> bool:
+    """Whether one run goes in and out again, or a dwell is part of a movement in and out."""
+    travel = float(np.ptp(z[known])) if known.any() else 0.0
+    for run in runs:
+        way = z[run][known[run]]
+        if way.size and min(float(way[0]), float(way[-1])) - float(way.min()) > _REST * travel:
+            return True
+    return len(runs) == 2 and _dwell_of(z, known) is not None
+
+
+def _dwell_of(z: Floats, known: NDArray[np.bool_]) -> tuple[int, int] | None:
+    """Where a dwell at the deepest place begins and ends; None where there is none. A ramp passes the lowest hundredth
+    of the travel in a hundredth of its points, one that turns as a sine in six of them: a dwell has many more."""
+    if not known.any():
+        return None
+    depth = np.where(known, z, np.inf)
+    low = float(depth.min())
+    near = depth <= low + _TURN * float(np.ptp(z[known]))
+    deepest = int(np.argmin(depth))
+    far = np.flatnonzero(~near)
+    first = int(far[far < deepest][-1]) + 1 if (far < deepest).any() else 0
+    last = int(far[far > deepest][0]) if (far > deepest).any() else z.size
+    ways = first, z.size - last
+    if last - first < _DWELL * min(ways):
+        return None
+    turns = [round(_TURN / (1.0 - _TURN) * points) for points in ways]
+    return first + turns[0], last - turns[1]
 
 
 def _role(z: Floats, travel: float, direction: int | None) -> Role:
