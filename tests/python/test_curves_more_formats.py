@@ -267,6 +267,7 @@ def test_a_turn_without_a_dwell_is_no_pause(tmp_path: Path) -> None:
     assert [len(segment) for segment in curve.segments] == pytest.approx([300, 300], abs=1)
     z = -0.5e-6 * (1.0 - np.cos(np.linspace(0.0, 2.0 * np.pi, 800)))  # as PeakForce moves
     wave = np.stack([-z, 0.0 * z, -z], axis=-1)
-    path = synthetic.write_ibw(tmp_path / "b.ibw", wave, ["Raw", "Defl", "ZSnsr"], note={"InvOLS": 5e-8, "SpringConstant": 0.1})
+    facts: dict[str, object] = {"InvOLS": 5e-8, "SpringConstant": 0.1}
+    path = synthetic.write_ibw(tmp_path / "b.ibw", wave, ["Raw", "Defl", "ZSnsr"], note=facts)
     (curve,) = curves.read(path)
     assert [segment.role for segment in curve.segments] == ["approach", "retract"]

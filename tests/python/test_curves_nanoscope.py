@@ -117,7 +117,7 @@ def test_a_force_volume_says_how_large_it_is(tmp_path: Path, scan: str, size: fl
         (b"Samps/line: 512 256", b"Samps/line: 511 256", "no whole number of curves of 767 points"),
         (b"Samps/line: 512 256", b"Samps/line: -12 256", "expected whole numbers"),
         (b"Data offset: 4096", b"Data offset: 9096", "it is cut off"),
-        (b"DeflSens: V 40.00000 nm/V", b"DeflSens: V 40.00000 lb/V", "no sensitivity 'DeflSens'"),
+        (b"DeflSens: V 40.00000 nm/V", b"DeflSens: V 40.00000 lb/V", "'V 40.00000 lb/V', expected a number of nm/V"),
         (b"DeflSens: V 40.00000 nm/V", b"DeflSens: V 0.000000 nm/V", "sensitivity 0 m/V, expected"),
         (b"Zsens: V 12.18000 nm/V", b"Zsens: V 12180000 um/V", "the base travels"),
         (b"Spring Constant: 0.999", b"Spring Constant: -0.99", "expected a positive number"),
@@ -190,7 +190,7 @@ def test_version_9_writes_other_capitals_and_leaves_the_unit_out(tmp_path: Path)
 def test_nobody_calibrated_it_but_the_user(tmp_path: Path) -> None:
     """A bare 1 stands where no sensitivity was measured."""
     path = rewritten(ramp(tmp_path / "ramp.000"), ("DeflSens: V 40.00000 nm/V", "DeflSens: V 1.000000 "))
-    with pytest.raises(ReadError, match="no sensitivity 'DeflSens' in metres per volt; give it"):
+    with pytest.raises(ReadError, match="no sensitivity 'DeflSens': a bare 1 is a placeholder; give it"):
         curves.read(path)
     given = curves.read(path, sensitivity=SENSITIVITY)[0]
     np.testing.assert_allclose(given.segments[0].deflection, volts(3e-9, N, STEP)[::-1] * SENSITIVITY, atol=1e-11)  # type: ignore[arg-type]

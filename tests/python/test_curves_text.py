@@ -66,7 +66,7 @@ def test_jpks_export_with_decimal_commas_several_curves_and_no_calibration(tmp_p
     found = curves.read(jpk_text(tmp_path / "a.txt", comma=True, index=(3, 4)))
     assert [len(curve.segments) for curve in found] == [3, 3]
     np.testing.assert_allclose(found[1].segments[0].force, WAYS[0][2], atol=1e-17)  # type: ignore[arg-type]
-    with pytest.raises(ReadError, match="states no spring constant; give it"):
+    with pytest.raises(ReadError, match="states no sensitivity; give it"):
         curves.read(jpk_text(tmp_path / "b.txt", "V", facts=False))
     (given,) = curves.read(tmp_path / "b.txt", spring_constant=K, sensitivity=SENSITIVITY)
     np.testing.assert_allclose(given.segments[0].force, WAYS[0][2], atol=1e-17)  # type: ignore[arg-type]

@@ -19,6 +19,8 @@ SIGNATURES = (b"\\*File list", b"\\*Force file list", b"\\*Ciao", b"\\*EC File l
 _HEADER_LIMIT = 1 << 20  # byte; those seen have 80 KiB
 _UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3,
           "m/V": 1.0}  # fmt: skip
+_PER_VOLT = {unit: value for unit, value in _UNITS.items() if unit.endswith("/V")}
+_PER_VOLT |= {"\xc5/V": 1e-10, "\xc3\x85/V": 1e-10, "nm/mV": 1e-6, "pm/mV": 1e-9, "um/mV": 1e-3}  # \xc5: angstrom
 _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
 _SCALED = re.compile(rf"V\s*\[Sens\. ([^\]]+)\]\s*\({_NUMBER}\s*(m?V)/LSB\)\s*{_NUMBER}\s*(m?V)")
 _SIZE = re.compile(rf"{_NUMBER}(?:\s+{_NUMBER})?\s+(nm|um|pm|mm|m)")
@@ -152,8 +154,8 @@ def sensitivity(found: list[Section], name: str) -> tuple[float, str] | None:
         if not match:
             continue
         value, unit = float(match[1]), plain_unit(match[2])
-        if unit in _UNITS and unit.endswith("/V"):
-            return value * _UNITS[unit], ""
+        if unit in _PER_VOLT:
+            return value * _PER_VOLT[unit], ""
         if not unit and value != 1.0:
             return value * 1e-9, f"the header states the sensitivity {name} {value:g} without a unit: taken as nm/V"
     return None
@@ -163,8 +165,19 @@ def piezo(found: list[Section], name: str) -> float:
     """A sensitivity that must be there, in m/V."""
     known = sensitivity(found, name)
     if known is None:
-        raise ReadError(f"{found[0].file}: its header states no sensitivity {name!r} in metres per volt")
+        raise ReadError(f"{found[0].file}: {no_sensitivity(found, name)}")
     return known[0]
+
+
+def no_sensitivity(found: list[Section], name: str) -> str:
+    """Why it is not known."""
+    stated = next((one[key] for one in found if (key := f"@sens. {name}".lower()) in one), None)
+    if stated is None:
+        return f"its header states no sensitivity {name!r}"
+    if re.fullmatch(r"V 1\.?0*\s*", stated):
+        return f"its header states no sensitivity {name!r}: a bare 1 is a placeholder"
+    known = ", ".join(unit for unit in _PER_VOLT if "\xc3" not in unit)
+    return f"its header states the sensitivity {name!r} as {stated!r}, expected a number of {known}"
 
 
 def stated_everywhere(found: list[Section], key: str) -> list[str]:

@@ -20,6 +20,7 @@ _WITH_COMMA = re.compile(
     r"(?P<head>[^\d]*[:=]\s*[-+]?)(?P<before>\d+),(?P<after>\d+)(?P<tail>(?:[eE][-+]?\d+)?\s*[^\d\s,.]*)\s*"
 )
 _LOOKED_AT = 200  # rows
+_TAIL, _ALIKE = 20000, 8  # characters at the end, and rows there, that tell how numbers are written
 _SHIFT_JIS_MICRO = "\x83\xca"  # as latin-1
 
 
@@ -69,6 +70,32 @@ def plain(text: str) -> str:
     cells = ";" if any(";" in line for line in sample) else "\t" if any("\t" in line for line in sample) else ""
     cells = "," if not (comma or cells) and any("," in line for line in sample) else cells
     return "\n".join(_row(line, comma, cells) if is_row(line) else _words(line, comma) for line in lines) + "\n"
+
+
+def ends_cut(text: str) -> bool:
+    """Whether the last number lacks digits: without an end of line after it, and shorter behind its point than all
+    others of its column. Where these differ among themselves, nobody can say."""
+    if not text or text[-1] in "\r\n":
+        return False
+    lines = text[-_TAIL:].splitlines()[1 if len(text) > _TAIL else 0 :]
+    if not is_row(lines[-1]):
+        return False
+    rows = [re.split(r"[\s;]+", line.strip()) for line in lines if is_row(line)]
+    others = [row[-1] for row in rows[:-1] if len(row) == len(rows[-1])]
+    if len(others) < _ALIKE:  # of a small matrix, whose columns are alike
+        others = [word for row in rows for word in row][:-1]
+    forms = [_form(word) for word in others]
+    last = _form(rows[-1][-1])
+    if last is None or len(forms) < _ALIKE or None in forms:
+        return False
+    decimals, exponents = zip(*forms, strict=True)
+    return len(set(decimals)) == 1 and (last[0] < decimals[0] or last[1] < min(exponents))
+
+
+def _form(word: str) -> tuple[int, int] | None:
+    """How many digits stand behind the point, and in the exponent."""
+    match = re.fullmatch(r"[-+]?\d*(?:[.,](\d*))?(?:[eE][-+]?(\d*))?", word)
+    return None if match is None else (len(match[1] or ""), len(match[2] or ""))
 
 
 def table(rows: Sequence[str]) -> NDArray[np.float64]:

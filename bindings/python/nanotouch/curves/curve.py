@@ -19,6 +19,7 @@ from .._arrays import as_floats
 from ..errors import InvalidValue
 
 Role = Literal["approach", "pause", "retract"]
+_CONTRADICTION = 0.2  # of the spring constant, in force over deflection: a baseline may be taken from one of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +90,19 @@ class ForceCurve:
     meta: Mapping[str, Any] = field(default_factory=dict)
     name: str = ""
 
+    def __post_init__(self) -> None:
+        stiffness = self.spring_constant
+        for segment in self.segments:
+            found = _stiffness(segment)
+            if found is None or not found:
+                continue
+            stiffness = found if stiffness is None else stiffness
+            if not abs(found - stiffness) <= _CONTRADICTION * abs(stiffness):
+                raise InvalidValue(
+                    f"force, deflection: in the {segment.role} they differ by {found:.4g} N/m, but the spring constant "
+                    f"is {stiffness:.4g} N/m; valid is up to {100 * _CONTRADICTION:g} % from it. Leave one of them out"
+                )
+
     @property
     def approach(self) -> Segment | None:
         """The first approach, with what goes on in its direction after a pause; None if there is none."""
@@ -135,3 +149,13 @@ class ForceCurve:
     def __repr__(self) -> str:
         parts = ", ".join(f"{s.role} {len(s)}" for s in self.segments)
         return f"ForceCurve({self.name!r} #{self.meta.get('enum', 0)}: {parts})"
+
+
+def _stiffness(segment: Segment) -> float | None:
+    """Force over deflection [N/m], between their extremes; None where one of them is missing or does not change."""
+    force, bent = segment.force, segment.deflection
+    if force is None or bent is None or not bent.size:
+        return None
+    low, high = int(bent.argmin()), int(bent.argmax())
+    span = float(bent[high] - bent[low])
+    return float(force[high] - force[low]) / span if span > 0.0 else None

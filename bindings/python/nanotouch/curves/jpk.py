@@ -31,7 +31,7 @@ from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS
 from .curve import ForceCurve, Role, Segment
-from .jpk_properties import FLOATS, TYPES, Facts, Properties, as_number, grouped, segments_of
+from .jpk_properties import FLOATS, TYPES, Facts, Properties, as_number, grouped, pair_of, segments_of
 
 NAME = "nanotouch/jpk"
 ENDINGS = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
@@ -160,8 +160,7 @@ class Archive:
         found: Properties = {}
         for line in self._zip.read(name).decode("latin-1").splitlines():
             if line and line[0] not in "#!":
-                key, _, value = line.partition("=")
-                value = value.replace("\\", "") if "\\" in value else value
+                key, value = pair_of(line)
                 if found.setdefault(key, value) != value:
                     raise ReadError(f"{self.file}: {name} states {key!r} as {found[key]!r} and as {value!r}")
         return found

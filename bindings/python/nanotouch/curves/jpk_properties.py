@@ -8,6 +8,7 @@ it converts from; a unit may have a prefix (``nm``), and what is converted is in
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,8 @@ TYPES = {"signedshort": ">i2", "unsignedshort": ">u2", "signedinteger": ">i4", "
 FLOATS = {"float-data": ">f4", "double-data": ">f8", "float": ">f4", "double": ">f8"}
 _PREFIX = {"": 1.0, "k": 1e3, "m": 1e-3, "u": 1e-6, "\xb5": 1e-6, "\xc2\xb5": 1e-6, "u00b5": 1e-6, "n": 1e-9,
            "p": 1e-12}  # fmt: skip
+
+_LINE = re.compile(r"\s*([^\\\s=:]*(?:\\.[^\\\s=:]*)*)\s*[=:]?\s*(.*)")
 
 Properties = dict[str, str]
 
@@ -123,6 +126,13 @@ class Facts:
             if f"{scaling}offset" in self.properties
             else 0.0
         )
+
+
+def pair_of(line: str) -> tuple[str, str]:
+    """Key and value of a line of properties: between them ``=``, ``:`` or a space, and spaces about it."""
+    match = _LINE.fullmatch(line)
+    key, value = (match[1], match[2]) if match else (line, "")
+    return (key.replace("\\", ""), value.replace("\\", "")) if "\\" in line else (key, value)
 
 
 def segments_of(names: Iterable[str]) -> dict[str, list[int]]:

@@ -32,6 +32,7 @@ _MARKS = re.compile(r"^# (?:TEXT EXPORT|xPosition|approachID|segmentIndex|force-
 _PREFIX = {"": 1.0, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "n": 1e-9, "p": 1e-12}
 _META = {"data-description.instrument": "instrument", "data-description.source-software": "software version",
          "approachID": "session id", "feedbackMode": "feedback mode", "date": "date"}  # fmt: skip
+_CUT = "\0 cut"  # no key of the file's
 
 
 @dataclass
@@ -49,7 +50,8 @@ def recognises(file: Path, head: bytes) -> bool:
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """All curves with the file's own calibration; `calibration` only where the file states none."""
-    blocks = list(_blocks(text.plain(text.decoded(file.read_bytes()))))
+    content = text.decoded(file.read_bytes())
+    blocks = list(_blocks(text.plain(content)))
     if not blocks:
         raise ReadError(f"{file}: a text export of JPK without a segment")
     if sum(len(block.rows) for block in blocks) > MAX_POINTS:
@@ -60,6 +62,9 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
         begins = begins or block.facts.get("index") != curves[-1][-1].facts.get("index")
         curves.extend([[]] if begins else [])
         curves[-1].append(block)
+    if text.ends_cut(content):
+        blocks[-1].rows.pop()
+        blocks[-1].facts[_CUT] = "the last row is cut off and left out"
     return [_curve(file, number, one, calibration) for number, one in enumerate(curves)]
 
 
@@ -98,9 +103,13 @@ def _curve(file: Path, number: int, blocks: list[_Block], given: Calibration) ->
         raise ReadError(
             f"{file}: curve {number} has no segments of style {', '.join(ROLES)}, only {', '.join(left_out)}"
         )
-    if left_out:
-        meta["notes"] = tuple(f"{counted(n, 'segment')} of style {s!r} left out" for s, n in left_out.items())
+    notes = [f"{counted(n, 'segment')} of style {s!r} left out" for s, n in left_out.items()]
+    notes += [block.facts[_CUT] for block in blocks if _CUT in block.facts]
     setpoint = _number(blocks[0], "force-settings.relative-setpoint", "setpoint")
+    if "spring constant" not in meta and segments[0].force is None:
+        notes.append("states no spring constant: deflections alone; give it for forces")
+    if notes:
+        meta["notes"] = tuple(notes)
     if setpoint and meta.get("spring constant") and meta.get("sensitivity"):
         meta["setpoint"] = setpoint["setpoint"] * meta["spring constant"] * meta["sensitivity"]
     return ForceCurve(tuple(segments), meta, printable(file.name))
@@ -157,10 +166,12 @@ class _Columns:
         return self.values[:, self.names.index(name)] * factor
 
 
-def _calibrated(columns: _Columns, block: _Block, meta: dict[str, Any], given: Calibration) -> tuple[Floats, Floats]:
-    """Force and deflection, whichever of force, deflection and volts stands in the rows."""
+def _calibrated(
+    columns: _Columns, block: _Block, meta: dict[str, Any], given: Calibration
+) -> tuple[Floats | None, Floats | None]:
+    """Force and deflection, whichever of force, deflection and volts stands in the rows; None for what is not known."""
     unit = columns.unit("vDeflection")[-1:]
-    needed = {"N": ("spring constant",), "m": ("spring constant",), "V": ("spring constant", "sensitivity")}.get(unit)
+    needed: tuple[str, ...] | None = {"N": (), "m": (), "V": ("sensitivity",)}.get(unit)
     if needed is None:
         raise ReadError(f"{columns.where}: 'vDeflection' is in {columns.unit('vDeflection')!r}, expected N, m or V")
     stated = _number(block, "springConstant", "spring constant") | _number(block, "sensitivity", "sensitivity")
@@ -170,8 +181,8 @@ def _calibrated(columns: _Columns, block: _Block, meta: dict[str, Any], given: C
             raise ReadError(f"{columns.where}: states no {key}; give it")
         if value is not None and meta.setdefault(key, value) != value:
             raise ReadError(f"{columns.where}: states two values of its {key}, {meta[key]:g} and {value:g}")
-    signal, stiffness = columns.si("vDeflection", unit), float(meta["spring constant"])
+    signal, stiffness = columns.si("vDeflection", unit), meta.get("spring constant")
     if unit == "N":
-        return signal, signal / stiffness
+        return signal, None if stiffness is None else signal / float(stiffness)
     deflection = signal if unit == "m" else signal * float(meta["sensitivity"])
-    return deflection * stiffness, deflection
+    return None if stiffness is None else deflection * float(stiffness), deflection

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from .._arrays import Floats
+from .._io import text
 from .._io.words import counted, printable
 from ..errors import ReadError
 from .calibration import Calibration
@@ -35,8 +36,7 @@ def recognises(file: Path, head: bytes) -> bool:
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """The one curve; `calibration` gives what such files do not state."""
-    text = file.read_bytes().decode("utf-8-sig", "replace")
-    header, mark, body = text.partition(_DATA)
+    header, mark, body = file.read_bytes().decode("utf-8-sig", "replace").partition(_DATA)
     if not mark:
         raise ReadError(f"{file}: lacks {_DATA}")
     facts = dict(line.split("\t")[:2] for line in header.splitlines() if "\t" in line)
@@ -65,10 +65,14 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
 
 def _table(file: Path, body: str) -> tuple[list[str], Floats, tuple[str, ...]]:
     """Names, columns, and a note of a last row that is cut off."""
-    lines = body.strip("\r\n").splitlines()
-    names = [name.strip() for name in lines[0].split("\t")] if lines else []
-    rows = [line.split("\t") for line in lines[1:] if line.strip()]
-    cut = bool(rows) and len(rows[-1]) < len(names)
+    first, _, rest = body.strip("\r\n").partition("\n")
+    names = [name.strip() for name in first.split("\t")] if first else []
+    try:
+        lines = text.plain(rest).splitlines()
+    except text.NotATable as error:
+        raise ReadError(f"{file}: {error}") from None
+    rows = [line.split("\t") for line in lines if line.strip()]
+    cut = bool(rows) and (len(rows[-1]) < len(names) or text.ends_cut(body))
     rows = rows[:-1] if cut else rows
     if not MIN_POINTS <= len(rows) <= MAX_POINTS or any(len(row) != len(names) for row in rows):
         raise ReadError(f"{file}: {len(rows)} rows, or rows of another length than its {len(names)} columns")

@@ -65,6 +65,7 @@ def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]
     if len(enough) < len(raw):
         notes += (f"{counted(len(raw) - len(enough), 'curve')} of {len(raw)} without data left out",)
     if len(raw) > 1 and not _is_capture(found):
+        _check_single(found, image, len(raw))
         notes += _check_count(found, len(raw))
     meta |= way.meta | ({"notes": notes + way.notes} if notes + way.notes else {})
     line = _line(found, len(raw)) if len(raw) > 1 else 1
@@ -108,7 +109,7 @@ def _meta(found: list[Section], image: Section, given: Calibration) -> tuple[dic
     first, name = found[0], image.must_be_scaled(":Z scale")[0]
     known = header.sensitivity(found, name)
     if known is None and given.sensitivity is None:
-        raise ReadError(f"{first.file}: its header states no sensitivity {name!r} in metres per volt; give it")
+        raise ReadError(f"{first.file}: {header.no_sensitivity(found, name)}; give it")
     sensitivity, note = (given.sensitivity, "") if known is None else known
     stiffness = image.spring_constant() if "spring constant" in image else given.spring_constant
     meta = {
@@ -154,6 +155,16 @@ def _line(found: list[Section], count: int) -> int:
         if line > 1 and count % line == 0:
             return line
     return 1
+
+
+def _check_single(found: list[Section], image: Section, count: int) -> None:
+    """A file of one ramp has no picture of the places of its curves."""
+    mode = next((one.get("operating mode", "") for one in found if one.name == "Ciao scan list"), "")
+    if mode == "Force" and not any(one.name == "Ciao image list" for one in found):
+        raise ReadError(
+            f"{image.file}: its data are {count} curves of 'Samps/line: {image.text('Samps/line')}', but its header is "
+            "that of one ramp (operating mode Force, no picture of places): 'Samps/line' or 'Data length' is wrong"
+        )
 
 
 def _check_count(found: list[Section], count: int) -> tuple[str, ...]:

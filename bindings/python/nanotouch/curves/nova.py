@@ -49,8 +49,11 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     assert calibration.sensitivity is not None
     assert calibration.spring_constant is not None
     check_detector(calibration.sensitivity, "A", file)
+    content = text.decoded(file.read_bytes())
+    cut = text.ends_cut(content)
     try:
-        values = text.table(text.plain(text.decoded(file.read_bytes())).splitlines())
+        lines = text.plain(content).splitlines()
+        values = text.table(lines[: len(lines) - cut])
     except text.NotATable as error:
         raise ReadError(f"{file}: not the table of three columns that Nova exports: {error}") from None
     if values.shape[1] != _COLUMNS or not MIN_POINTS <= len(values) <= MAX_POINTS:
@@ -67,7 +70,7 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
         "spring constant": calibration.spring_constant, "sensitivity": calibration.sensitivity, DETECTOR: "A",
     }  # fmt: skip
     segments = []
-    notes = []
+    notes = ["the last row is cut off and left out"] if cut else []
     for role, rows in branches:
         known = rows[np.isfinite(rows).all(axis=1)]
         if not len(known):

@@ -10,10 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._arrays import as_floats, check_between
 from ..errors import InvalidValue, require
+from .calibration import SPRING_CONSTANT_RANGE
 
 TEMPERATURES = (77.0, 1000.0)  # [K]
 ZERO_CELSIUS = 273.15  # [K]
 BOLTZMANN = 1.380649e-23  # J/K, exact
+#: k_c/(2 pi f_r)^2 [kg]: levers in vacuum from 1e-15, tuning forks up to 1e-7, what moves with a soft one in water 1e-9
+EFFECTIVE_MASS = (1e-17, 1e-6)
 #: First mode of a rectangular beam seen by an optical lever that was calibrated by pressing: 0.971/1.09^2 (Butt and
 #: Jaschke 1995; Hutter 2005).
 OPTICAL_LEVER = 0.817
@@ -75,6 +78,12 @@ def thermal_tune(
         [K], 77 .. 1000; room temperature is 295, not 22.
     correction : float
         0.971 for a true deflection of the end, 0.817 for an optical lever.
+
+    Raises
+    ------
+    InvalidValue
+        If what comes out is no lever's spring constant (1e-4 .. 1e4 N/m) or mass: densities in pm^2/Hz or V^2/Hz,
+        amplitudes in m/sqrt(Hz), frequencies in kHz.
     """
     f, S = as_floats(frequency, "frequency"), as_floats(density, "density")
     if f.ndim == 1 and f.shape == S.shape:
@@ -106,6 +115,7 @@ def thermal_tune(
     A, f_r, quality, B = (float(value) for value in np.exp(found.x))
     covariance = float(special.polygamma(1, averages)) * np.linalg.pinv(found.jac.T @ found.jac)
     stiffness = correction * BOLTZMANN * temperature / (0.5 * np.pi * A * f_r * quality)
+    _check_lever(stiffness, f_r)
     of_product = np.array([1.0, 1.0, 1.0, 0.0])
     sigma = {
         "spring_constant": stiffness * float(np.sqrt(of_product @ covariance @ of_product)),
@@ -113,3 +123,19 @@ def thermal_tune(
         "quality_factor": quality * float(np.sqrt(covariance[2, 2])),
     }
     return ThermalTune(stiffness, f_r, quality, B, sigma)
+
+
+def _check_lever(stiffness: float, resonance: float) -> None:
+    """Refuse what a wrong unit makes of a spectrum."""
+    (soft, stiff), (light, heavy) = SPRING_CONSTANT_RANGE, EFFECTIVE_MASS
+    if not soft <= stiffness <= stiff:
+        raise InvalidValue(
+            f"density: a spring constant of {stiffness:.3g} N/m follows, expected {soft:g} .. {stiff:g} N/m; is the "
+            "density in m^2/Hz (not pm^2/Hz, V^2/Hz or m/sqrt(Hz))?"
+        )
+    mass = stiffness / (2.0 * np.pi * resonance) ** 2
+    if not light <= mass <= heavy:
+        raise InvalidValue(
+            f"frequency: a lever of {stiffness:.3g} N/m with its resonance at {resonance:.4g} Hz has a mass of "
+            f"{mass:.3g} kg, expected {light:g} .. {heavy:g} kg; is the frequency in Hz (not kHz or rad/s)?"
+        )
