@@ -99,6 +99,8 @@ def _listed(wave: _Wave) -> list[Channel]:
 def _meaning(wave: _Wave, name: str) -> tuple[str | None, str]:
     """Unit and kind of a channel."""
     unit = _unit(wave, name) if wave.note and wave.labelled else wave.data_unit or None
+    if unit in LENGTHS and wave.data_unit and wave.data_unit not in LENGTHS and not _stated_unit(wave, name):
+        unit = wave.data_unit  # the name says a length, the wave does not
     plain = name.casefold()
     other = next((part for part in OTHER_NAMES if part in plain and part != "potential"), "")
     if unit is None and not other and any(part in plain for part in HEIGHT_NAMES):
@@ -108,13 +110,20 @@ def _meaning(wave: _Wave, name: str) -> tuple[str | None, str]:
     return unit, "height" if unit in LENGTHS else _KINDS.get(unit or "", "voltage" if unit is None else "other")
 
 
+def _base(name: str) -> str:
+    return re.sub(r"(?:Retrace|Trace)$", "", re.sub(r"Mod[0-9]*$", "", name))
+
+
+def _stated_unit(wave: _Wave, name: str) -> str | None:
+    return wave.note.get(f"{_base(name)}Unit")
+
+
 def _unit(wave: _Wave, name: str) -> str | None:
     """By the note, else by Asylum's names; what neither knows is not stated."""
-    base = re.sub(r"(?:Retrace|Trace)$", "", re.sub(r"Mod[0-9]*$", "", name))
-    stated = wave.note.get(f"{base}Unit")
+    stated = _stated_unit(wave, name)
     if stated:
         return si_unit(nanoscope_header.plain_unit(stated))
-    base = re.sub(r"^(?:DAC|Nap)", "", base)
+    base = re.sub(r"^(?:DAC|Nap)", "", _base(name))
     return next((unit for start, unit in _UNITS.items() if base.startswith(start)), None)
 
 

@@ -83,6 +83,11 @@ class Plane:
     notes: tuple[str, ...] = ()
 
 
+def other_kind(name: str) -> str:
+    """What a channel of this name holds that is no height; empty where the name does not say so."""
+    return next((part for part in OTHER_NAMES if part in name.casefold()), "")
+
+
 def si_unit(unit: str) -> str:
     """Of a format that keeps to SI, where A is the ampere and no Ångström, as elsewhere."""
     return "ampere" if unit == "A" else unit

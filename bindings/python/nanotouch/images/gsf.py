@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ReadError
-from .channel import Channel, Plane, chosen, si_unit, with_default, written_unit
+from .channel import Channel, Plane, chosen, other_kind, si_unit, with_default, written_unit
 from .checks import LENGTHS, check_shape
 
 NAME = "nanotouch/gsf"
@@ -28,10 +28,9 @@ def channels(file: Path) -> list[Channel]:
     """The one picture there is."""
     facts, _ = _header(file)
     size = _size(facts)
-    kind = "height" if facts.get("ZUnits", "m") in LENGTHS else facts.get("Title", "").casefold()
-    return with_default(
-        [Channel(facts.get("Title", "Data"), _shape(file, facts), size, facts.get("ZUnits"), kind, False)]
-    )
+    title = facts.get("Title", "Data")
+    kind = other_kind(title) or ("height" if facts.get("ZUnits", "m") in LENGTHS else title.casefold())
+    return with_default([Channel(title, _shape(file, facts), size, facts.get("ZUnits"), kind, False)])
 
 
 def read(file: Path, channel: str | None) -> Plane:

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ReadError
-from .channel import Channel, Plane, si_unit
+from .channel import Channel, Plane, other_kind, si_unit
 from .checks import LENGTHS, check_shape
 
 MAGIC = b"GWYP"
@@ -34,7 +34,8 @@ def channels(file: Path) -> list[Channel]:
     for name, (_, field) in _fields(_content(file), file).items():
         size = (field["yreal"], field["xreal"]) if _unit(field, "xy") == "m" else None
         unit = _unit(field, "z") or None
-        found.append(Channel(name, _shape(field, file), size, unit, "height" if unit in LENGTHS else "other", False))
+        kind = other_kind(name) or ("height" if unit in LENGTHS else "other")
+        found.append(Channel(name, _shape(field, file), size, unit, kind, False))
     return found
 
 

@@ -119,10 +119,10 @@ def _header(file: Path) -> _Scan:
     if len(scan_type) != 2 or scan_type[0] != "FLOAT" or scan_type[1] not in _ORDERS:
         raise ReadError(f"{file}: numbers of the type {' '.join(scan_type)}, expected FLOAT MSBFIRST or LSBFIRST")
     try:
-        nx, ny = (int(word) for word in _words(file, facts, "SCAN_PIXELS"))
-        width, height = (float(word.replace(",", ".")) for word in _words(file, facts, "SCAN_RANGE"))
+        nx, ny = (int(word) for word in _pair(file, facts, "SCAN_PIXELS", "whole numbers"))
+        width, height = (float(word.replace(",", ".")) for word in _pair(file, facts, "SCAN_RANGE", "lengths [m]"))
     except ValueError as error:
-        raise ReadError(f"{file}: pixels or range of its header are no two numbers: {error}") from None
+        raise ReadError(f"{file}: SCAN_PIXELS or SCAN_RANGE holds what is no number: {error}") from None
     direction = [word.casefold() for word in _words(file, facts, "SCAN_DIR")]
     if direction not in (["up"], ["down"]):
         raise ReadError(f"{file}: scanned {' '.join(direction)!r}, expected up or down")
@@ -134,6 +134,13 @@ def _words(file: Path, facts: dict[str, list[str]], key: str) -> list[str]:
     if not facts.get(key):
         raise ReadError(f"{file}: its header lacks {key}")
     return facts[key][0].split()
+
+
+def _pair(file: Path, facts: dict[str, list[str]], key: str, noun: str) -> list[str]:
+    words = _words(file, facts, key)
+    if len(words) != 2:
+        raise ReadError(f"{file}: {key} is {' '.join(words)!r}, expected two {noun}, along x and y")
+    return words
 
 
 def _pictures(file: Path, facts: dict[str, list[str]]) -> tuple[tuple[str, str, bool], ...]:

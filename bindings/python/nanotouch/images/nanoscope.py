@@ -20,7 +20,7 @@ from .._arrays import Floats
 from .._io import nanoscope_header as header
 from .._io.nanoscope_header import Section
 from ..errors import ReadError
-from .channel import HEIGHT_NAMES, OTHER_NAMES, Channel, Plane, chosen, with_default
+from .channel import HEIGHT_NAMES, Channel, Plane, chosen, other_kind, with_default
 from .checks import LENGTHS, check_shape
 from .nanoscope_layout import Layout, layout_of
 
@@ -93,8 +93,7 @@ def _channel(image: _Image) -> Channel:
 
 def _kind(image: _Image) -> str:
     name = image.name.casefold()
-    other = next((part for part in OTHER_NAMES if part in name), "")
-    return other or ("height" if image.unit in LENGTHS else "other")
+    return other_kind(name) or ("height" if image.unit in LENGTHS else "other")
 
 
 def _images(file: Path) -> list[_Image]:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ReadError
-from .channel import Channel, Plane, chosen, si_unit, with_default
+from .channel import Channel, Plane, chosen, other_kind, si_unit, with_default
 from .checks import LENGTHS, check_shape
 
 NAME = "nanotouch/ntmdt"
@@ -89,6 +89,7 @@ def _listed(pictures: list[_Picture]) -> list[Channel]:
         ly, lx = picture.y.length, picture.x.length
         size = None if ly is None or lx is None else (ly, lx)
         kind = "height" if picture.z.unit in LENGTHS else picture.z.name.casefold() or "unknown"
+        kind = other_kind(f"{picture.title} {picture.z.name}") or kind
         same = sum(channel.name.partition("#")[0] == picture.title for channel in listed)
         name = f"{picture.title}#{same + 1}" if same else picture.title
         listed.append(Channel(name, (picture.y.count, picture.x.count), size, picture.z.unit, kind, False))

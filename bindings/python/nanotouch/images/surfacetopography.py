@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from .._io.files import guarded
 from ..errors import ReadError, require
 from . import dataset, gwyddion, headers, text_table
-from .channel import OTHER_NAMES, Channel, Plane, chosen, with_default
+from .channel import Channel, Plane, chosen, other_kind, with_default
 from .checks import LENGTHS, PIXELS_PER_SIDE, check_shape
 
 NAME = "SurfaceTopography"
@@ -38,16 +38,16 @@ _NO_HEIGHTS_IN_TIFF = (
 
 def channels(file: Path) -> list[Channel]:
     """The two-dimensional channels of a file."""
-    with _opened(file) as reader:
+    with _opened(file) as (reader, plain):
         found, left_out = _images_in(reader, file)
-        return _listed(found, left_out, file, str(reader.format()))
+        return _listed(found, left_out, file, str(reader.format()), plain)
 
 
 def read(file: Path, channel: str | None) -> Plane:
     """One channel, the height channel if none is named."""
-    with _opened(file) as reader:
+    with _opened(file) as (reader, plain):
         found, left_out = _images_in(reader, file)
-        listed = _listed(found, left_out, file, str(reader.format()))
+        listed = _listed(found, left_out, file, str(reader.format()), plain)
         number = chosen(listed, channel, file)
         broken = gwyddion.broken(file) if reader.format() == "gwy" else ()
         if number >= len(found):
@@ -57,7 +57,10 @@ def read(file: Path, channel: str | None) -> Plane:
         unsized = info.physical_sizes is None
         loaded = info.topography(physical_sizes=info.nb_grid_pts if unsized else None)
         lateral, vertical = _units(loaded.unit if loaded.unit is not None else info.unit)
-        raw = np.ma.filled(np.ma.asarray(loaded.heights(), dtype=np.float64), np.nan)
+        stored = np.ma.asarray(loaded.heights())
+        if stored.dtype.kind not in "fiu":
+            raise ReadError(f"{file}: its numbers are {stored.dtype}, expected real ones")
+        raw = np.ma.filled(stored.astype(np.float64), np.nan)
         if raw.shape != tuple(info.nb_grid_pts):
             raise ReadError(f"{file}: {raw.shape} values, but its header states {tuple(info.nb_grid_pts)} pixels")
         values, kind = _upright(raw, reader.format()), _kind(info)
@@ -70,7 +73,11 @@ def read(file: Path, channel: str | None) -> Plane:
         no_size = "states no scan size"
         if not unsized and lateral not in LENGTHS:
             no_size = "states no lateral unit" if lateral is None else f"states the lateral unit {lateral!r}"
-        notes = broken
+        notes = broken + plain.notes
+        stated = plain.sizes.get(name) if vertical is None else None
+        if stated is not None:
+            pixel_size = stated[0] / values.shape[0], stated[1] / values.shape[1]
+            return Plane(name, values, vertical, pixel_size, source, notes=notes)
         if unsized or lateral not in LENGTHS:
             return Plane(name, values, vertical, None, source, no_size, notes=notes)
         lx, ly = (float(s) * LENGTHS[lateral] for s in loaded.physical_sizes)
@@ -80,19 +87,32 @@ def read(file: Path, channel: str | None) -> Plane:
 
 
 @contextmanager
-def _opened(file: Path) -> Iterator[Any]:
+def _opened(file: Path) -> Iterator[tuple[Any, text_table.Plain]]:
     with guarded(file, NAME), text_table.plain_form(file) as plain:
         io: ModuleType = require("SurfaceTopography.IO", "images")
         try:
-            reader = io.open_topography(str(plain))
+            reader = io.open_topography(str(plain.file))
         except io.CannotDetectFileFormat:
             reader = None
         if reader is None or reader.format() in _CREDULOUS:
+            _refuse_array(file)
             raise ReadError(f"{file}: not an AFM image in any format that {NAME} recognises by content")
         with reader, guarded(file, f"{NAME}/{reader.format()}"):
             if reader.format() in ("asc", "xyz"):
                 text_table.check_text(file)
-            yield reader
+            yield reader, plain
+
+
+def _refuse_array(file: Path) -> None:
+    """Say of numpy's file what it holds."""
+    with file.open("rb") as stream:
+        if stream.read(6) != b"\x93NUMPY":
+            return
+        stream.seek(0)
+        version = np.lib.format.read_magic(stream)
+        header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, dtype = header(stream)
+    raise ReadError(f"{file}: an array of {dtype} of the shape {shape}; images are real numbers in two dimensions")
 
 
 def _images_in(reader: Any, file: Path) -> tuple[list[Any], list[Channel]]:
@@ -114,13 +134,18 @@ def _images_in(reader: Any, file: Path) -> tuple[list[Any], list[Channel]]:
 def _kind(info: Any) -> str:
     """What a channel holds; SurfaceTopography calls a height what has no unit, or the unit of an amplitude."""
     kind, name = str(info.data_kind.value), str(info.name).casefold()
-    other = next((part for part in OTHER_NAMES if part in name), "")
-    return other or kind if kind == "height" else kind
+    return other_kind(name) or kind if kind == "height" else kind
 
 
-def _listed(found: list[Any], left_out: list[Channel], file: Path, format_: str) -> list[Channel]:
+def _listed(
+    found: list[Any], left_out: list[Channel], file: Path, format_: str, plain: text_table.Plain
+) -> list[Channel]:
     describe = _array if format_ in _BARE else _described
-    return with_default([*(describe(info, _kind(info), file) for info in found), *left_out])
+    listed = [describe(info, _kind(info), file) for info in found]
+    listed = [
+        replace(one, size=plain.sizes.get(one.name)) if one.unit is None and plain.sizes else one for one in listed
+    ]
+    return with_default([*listed, *left_out])
 
 
 def _array(info: Any, kind: str, file: Path) -> Channel:

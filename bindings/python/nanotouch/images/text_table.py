@@ -22,6 +22,7 @@ from .._io import text
 from .._io.readers import head_of
 from ..errors import ReadError
 from .checks import LENGTHS
+from .text_dialects import translated
 
 _CURVES = re.compile(
     r'\A(?:"\\[?*]?(?:Force file|File) list"|Force-Distance Curve|# TEXT EXPORT)|^# (?:approachID|segmentIndex)', re.M
@@ -29,6 +30,7 @@ _CURVES = re.compile(
 _NUMBERS = 4  # in a row of a picture, or of points: at least 2
 _EVEN = 5  # equal steps in a row, which heights do not have by chance
 _STATED = re.compile(r"\s*[#%;]*\s*(?P<key>[^\s:=][^:=]{0,40}?)\s*[:=]\s*(?P<value>\S.*)")
+_STATED_LENGTH = re.compile(r"([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(\S+)")
 _SIZES = ("width", "height", "x-length", "y-length")
 _UNITS = ("value units", "z-unit", "unit data")  # of the heights
 _DECIDES = (
@@ -38,18 +40,27 @@ _DECIDES = (
 _MISSING = {"nan", "bad", "inf", "infinity", "-inf", "+inf"}
 
 
+@dataclass(frozen=True)
+class Plain:
+    """A file with the table in UTF-8, with points and tabs: the file itself where that is how it is written, or where
+    it is no table."""
+
+    file: Path
+    sizes: dict[str, tuple[float, float]] = field(default_factory=dict)  # (Ly, Lx) of each channel [m]
+    notes: tuple[str, ...] = ()
+
+
 @contextmanager
-def plain_form(file: Path) -> Iterator[Path]:
-    """A file with the same table in UTF-8, with points and tabs; the file itself where that is how it is written, or
-    where it is no table."""
-    content = _plain(file)
+def plain_form(file: Path) -> Iterator[Plain]:
+    """What is read in place of the file."""
+    content, sizes, notes = _plain(file)
     if content is None:
-        yield file
+        yield Plain(file, sizes, notes)
         return
     with TemporaryDirectory() as folder:
         other = Path(folder) / f"table{file.suffix}"
         other.write_text(content, encoding="utf-8")
-        yield other
+        yield Plain(other, sizes, notes)
 
 
 def check_text(file: Path) -> None:
@@ -66,37 +77,62 @@ class _Table:
     columns: int = 0
     top: list[list[str]] = field(default_factory=list)  # its first two rows
     left: list[list[str]] = field(default_factory=list)  # its first two columns
+    runs: list[int] = field(default_factory=list)  # rows between empty lines
 
-    def add(self, words: list[str]) -> None:
+    def add(self, words: list[str], is_next: bool) -> None:
+        if is_next and self.runs:
+            self.runs[-1] += 1
+        else:
+            self.runs.append(1)
         if len(self.top) < 2:
             self.top.append(words)
         self.left.append(words[:2])
         self.columns = len(words)
 
 
-def _plain(file: Path) -> str | None:
+_NOTHING: tuple[str | None, dict[str, tuple[float, float]], tuple[str, ...]] = (None, {}, ())
+
+
+def _plain(file: Path) -> tuple[str | None, dict[str, tuple[float, float]], tuple[str, ...]]:
+    """What the table is in the plain form, None where it is so already; its sizes; what was supplied."""
     head = text.without_padding(head_of(file))
     if not text.is_text(head):
-        return None
+        return _NOTHING
     if _CURVES.search(text.decoded(head)):
         raise ReadError(f"{file}: force curves as text, not an image: curves.read reads them")
     stored = file.read_bytes()
     raw = text.without_padding(stored)
     if not text.is_text(raw):
-        return None
+        return _NOTHING
+    decoded = text.decoded(raw)
     try:
-        content = text.plain(text.decoded(raw))
+        lines = text.plain(decoded).splitlines()
     except text.NotATable as error:
         raise ReadError(f"{file}: {error}") from None
-    lines = content.splitlines()
+    lines, notes = translated(file, lines)
     rows = [number for number, line in enumerate(lines) if text.is_row(line) and len(line.split("\t")) > 1]
     if len(rows) < _NUMBERS:
-        return None
+        return _NOTHING
     columns = len(lines[rows[0]].split())
     for number, line in enumerate(lines):
         _refuse_damaged(file, number, line, 0 if rows[0] < number < rows[-1] else columns)
-    _check(file, _tables(file, lines))
-    return content if content.encode() != stored else None
+    tables = _tables(file, lines)
+    if text.ends_cut(decoded):
+        raise ReadError(f"{file}: its last number, {lines[rows[-1]].split()[-1]}, is cut off")
+    _check(file, tables)
+    content = "\n".join(lines) + "\n"
+    return content if content.encode() != stored else None, _sizes(tables), notes
+
+
+def _sizes(tables: list[_Table]) -> dict[str, tuple[float, float]]:
+    """Of those that state both sides with a unit; SurfaceTopography takes none of them without one of the heights."""
+    found = {}
+    for table in tables:
+        sides = [_STATED_LENGTH.fullmatch(table.header.get(key, "")) for key in ("height", "width")]
+        lengths = [float(m[1]) * LENGTHS[m[2]] for m in sides if m is not None and m[2] in LENGTHS]
+        if len(lengths) == 2:
+            found[table.header.get("channel", "Default")] = (lengths[0], lengths[1])
+    return found
 
 
 def _refuse_damaged(file: Path, number: int, line: str, columns: int) -> None:
@@ -115,7 +151,7 @@ def _refuse_damaged(file: Path, number: int, line: str, columns: int) -> None:
 
 def _tables(file: Path, lines: list[str]) -> list[_Table]:
     """All tables, in order. A header that states one thing twice is refused, and so are rows of different lengths."""
-    found = [_Table()]
+    found, is_next = [_Table()], False
     for number, line in enumerate(lines, 1):
         if text.is_row(line):
             words = line.split()
@@ -123,8 +159,10 @@ def _tables(file: Path, lines: list[str]) -> list[_Table]:
             if len(words) != columns and min(len(words), columns) and max(len(words), columns) >= _NUMBERS:
                 told = f"line {number} has {len(words)} numbers, the one before has {columns}"
                 raise ReadError(f"{file}: {told}: it is cut off or damaged")
-            found[-1].add(words)
+            found[-1].add(words, is_next)
+            is_next = True
             continue
+        is_next = False
         stated = _STATED.match(line)
         if stated is None or (key := stated["key"].casefold()) not in _DECIDES:
             continue
@@ -148,11 +186,15 @@ def _check(file: Path, tables: list[_Table]) -> None:
             for key, value in table.header.items():
                 _agree(file, key, tables[-2].header.get(key, value), value)
             continue
+        if sum(run >= _NUMBERS for run in table.runs) > 1 and table.columns >= _NUMBERS:
+            told = " and ".join(map(str, table.runs[:8]))
+            raise ReadError(f"{file}: tables of {told} rows under one header: which of them is the image? Split them")
         names.append(table.header.get("channel", names[-1] if names else ""))
         if names[-1] in names[:-1]:
             raise ReadError(f"{file}: it holds two tables under the name {names[-1]!r}")
         _check_header(file, table.header)
         _refuse_places(file, table)
+    _check_lengths(file, [table.header for table in tables if table.columns])
 
 
 def _check_header(file: Path, header: dict[str, str]) -> None:
@@ -168,6 +210,17 @@ def _check_header(file: Path, header: dict[str, str]) -> None:
         part = re.match(r"\w*", whole)
         if part is not None and part[0] != whole and part[0] in LENGTHS:
             raise ReadError(f"{file}: its header states {key!r} as {whole!r}, which is no length")
+
+
+def _check_lengths(file: Path, headers: list[dict[str, str]]) -> None:
+    """Refuse a file of which no table is in a unit of length: the reader would say that there is none."""
+    units = [next((header[key] for key in _UNITS if key in header), "m") for header in headers]
+    if not any(unit in LENGTHS or re.match(r"\w*", unit)[0] in LENGTHS for unit in units):  # type: ignore[index]
+        told = ", ".join(
+            f"{header.get('channel', 'its table')!r} is in {unit!r}"
+            for header, unit in zip(headers, units, strict=True)
+        )
+        raise ReadError(f"{file}: {told}, not a length ({', '.join(LENGTHS)}), so it holds no heights")
 
 
 def _refuse_places(file: Path, table: _Table) -> None:

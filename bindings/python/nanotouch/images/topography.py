@@ -6,9 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import refuse_dressed
+from .._arrays import as_floats, as_mask
 from ..errors import InvalidValue
 from .words import length, lengths
 
@@ -91,11 +91,11 @@ class Topography:
         )
 
 
-def _frozen(array: object, dtype: type[np.generic]) -> NDArray[np.generic]:
+def _frozen(array: ArrayLike, dtype: type[np.generic]) -> NDArray[np.generic]:
     """A read-only C-ordered view (or copy, where the layout or type differs); the caller's own array stays writable."""
     if isinstance(array, np.ma.MaskedArray):
         raise InvalidValue("masked arrays are not accepted: fill them and pass `mask`")
-    refuse_dressed(array, "the image")
-    view = np.ascontiguousarray(array, dtype=dtype).view()
+    checked = as_mask(array, "the mask") if dtype is np.bool_ else as_floats(array, "the image")
+    view = np.ascontiguousarray(checked, dtype=dtype).view()
     view.flags.writeable = False
     return view

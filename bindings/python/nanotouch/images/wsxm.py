@@ -15,7 +15,7 @@ import numpy as np
 
 from .._arrays import Floats
 from ..errors import ReadError
-from .channel import OTHER_NAMES, Channel, Plane, chosen, si_unit, with_default
+from .channel import Channel, Plane, chosen, other_kind, si_unit, with_default
 from .checks import LENGTHS, check_shape
 
 NAME = "nanotouch/wsxm"
@@ -24,6 +24,8 @@ _KIND = b"SxM Image file"
 _END = re.compile(rb"\[Header end\]\r?\n")
 _STORED = {"short": "<i2", "integer": "<i2", "float": "<f4", "double": "<f8"}
 _QUANTITY = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(\S*)")
+_WITH_COMMA = re.compile(r"(-?\d+),(\d+)((?:[eE][-+]?\d+)?\s*[^\s\d.,]*)")
+_WITH_POINT = re.compile(r"-?\d+\.\d+(?:[eE][-+]?\d+)?\s*[^\s\d.,]*")
 _DECIDES = ("X Amplitude", "Y Amplitude", "Z Amplitude", "Number of rows", "Number of columns", "Image Data Type")
 _DIFFER = 0.01  # amplitude and range of the heights, above which it is told
 
@@ -96,8 +98,7 @@ def _listed(file: Path, header: _Header) -> Channel:
     amplitude = _quantity(general.get("Z Amplitude", ""))
     unit = amplitude[1] if amplitude and amplitude[1] else None
     title = general.get("Acquisition channel", "Default")
-    other = next((part for part in OTHER_NAMES if part in title.casefold()), "")
-    kind = other or ("height" if unit is None or unit in LENGTHS else "other")
+    kind = other_kind(title) or ("height" if unit is None or unit in LENGTHS else "other")
     return with_default([Channel(title, shape, size, si_unit(unit) if unit else None, kind, False)])[0]
 
 
@@ -124,8 +125,24 @@ def _header(file: Path) -> _Header:
             known = facts.setdefault(key.strip(), value.strip())
             if known != value.strip() and key.strip() in _DECIDES:
                 raise ReadError(f"{file}: {key.strip()!r} is stated as {known!r} and as {value.strip()!r}")
+    _write_points(file, sections)
     stated = re.search(rb"Image header size:\s*(\d+)", content[:200])
     return _Header(sections, end.end(), int(stated[1]) if stated else None)
+
+
+def _write_points(file: Path, sections: dict[str, dict[str, str]]) -> None:
+    """Decimal commas become points, where the header has no points and not all commas may stand between thousands."""
+    values = [value for facts in sections.values() for value in facts.values()]
+    commas = [match for value in values if (match := _WITH_COMMA.fullmatch(value))]
+    if not commas:
+        return
+    if any(_WITH_POINT.fullmatch(value) for value in values) or all(
+        len(match[2]) == 3 and match[1].lstrip("-") != "0" for match in commas
+    ):
+        raise ReadError(f"{file}: the comma of {commas[0][0]!r} may be a decimal one, or between thousands")
+    for facts in sections.values():
+        for key, value in facts.items():
+            facts[key] = _WITH_COMMA.sub(r"\1.\2\3", value) if _WITH_COMMA.fullmatch(value) else value
 
 
 def _text(line: bytes) -> str:

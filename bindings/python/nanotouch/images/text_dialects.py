@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Text images with headers that the reader of text tables does not know, in the words of Gwyddion's export, which it
+does: WSxM's matrices and points, and SPIP's without its hashes.
+
+Neither of WSxM's says where its first row lies: it is taken as the upper edge of a matrix, and y of points as rising
+upwards, which is told.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from .._arrays import Floats
+from .._io import text
+from ..errors import ReadError
+from .channel import si_unit
+from .checks import LENGTHS, PIXELS_PER_SIDE
+
+_WSXM = "WSxM file copyright"
+_AXES = re.compile(r"\s*X\s*\[(?P<x>[^\]]+)\]\s+Y\s*\[(?P<y>[^\]]+)\]\s+(?P<name>\w+)\s*\[(?P<z>[^\]]+)\]\s*")
+_AMPLITUDE = re.compile(r"\s*([XYZ]) Amplitude:\s*([-+0-9.eE]+)\s*(\S*)\s*")
+_SPIP = re.compile(r"#?\s*File Format\s*=\s*ASCII\s*")
+_EVEN = 0.02  # of a step, by which one that was rounded may differ
+
+
+def translated(file: Path, lines: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:
+    """The same table under a header that is known, and what was supplied; `lines` in the form of
+    :func:`nanotouch._io.text.plain`."""
+    if lines and lines[0].startswith(_WSXM):
+        return _points(file, lines) if "XYZ" in lines[1] else _matrix(lines)
+    if any(_SPIP.fullmatch(line) for line in lines[:100]):
+        void = next((m[1] for line in lines[:100] if (m := re.fullmatch(r"#?\s*Voidpixels\s*=\s*(\d+)\s*", line))), "0")
+        told = () if int(void) == 0 else (f"its header states {void} void pixels, which are not told apart",)
+        return [line if line.startswith("#") or text.is_row(line) else f"# {line}" for line in lines], told
+    return list(lines), ()
+
+
+def _matrix(lines: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:
+    sides = {match[1]: (match[2], match[3]) for line in lines if (match := _AMPLITUDE.fullmatch(line))}
+    header = ["# Channel: Topography"]
+    header += [f"# {key}: {' '.join(sides[axis])}" for axis, key in (("X", "Width"), ("Y", "Height")) if axis in sides]
+    unit = sides.get("Z", ("", ""))[1]
+    header += [f"# Value units: {unit}"] if unit else []
+    rows = [line for line in lines if text.is_row(line)]
+    return header + rows, ("the first row of a WSxM matrix is taken as its upper edge",)
+
+
+def _points(file: Path, lines: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:
+    axes = next((match for line in lines[2:] if (match := _AXES.fullmatch(line))), None)
+    if axes is None or axes["x"] != axes["y"] or axes["x"] not in LENGTHS:
+        raise ReadError(f"{file}: points of WSxM without 'X[nm] Y[nm] Z[nm]', one length for x and y")
+    try:
+        values = text.table([line for line in lines if text.is_row(line)])
+    except text.NotATable as error:
+        raise ReadError(f"{file}: {error}") from None
+    if values.shape[1] != 3:
+        raise ReadError(f"{file}: points of WSxM with {values.shape[1]} numbers in a row, expected 3")
+    (xs, dx), (ys, dy) = (_raster(file, values[:, axis], "xy"[axis]) for axis in (0, 1))
+    heights = np.full((ys.size, xs.size), np.nan)
+    heights[ys.size - 1 - np.searchsorted(ys, values[:, 1]), np.searchsorted(xs, values[:, 0])] = values[:, 2]
+    if len(values) != heights.size or np.isnan(heights).any():
+        raise ReadError(
+            f"{file}: {len(values)} points of WSxM at {xs.size} places along x and {ys.size} along y: no whole raster"
+        )
+    unit = "Å" if axes["z"] == axes["x"] == "A" else si_unit(axes["z"])
+    header = ["# Channel: Topography" if axes["name"] == "Z" else f"# Channel: {axes['name']}",
+              f"# Width: {xs.size * dx!r} {axes['x']}", f"# Height: {ys.size * dy!r} {axes['y']}",
+              f"# Value units: {unit}"]  # fmt: skip
+    rows = ["\t".join(map(repr, row)) for row in heights.tolist()]
+    return header + rows, ("y of WSxM's points is taken as rising upwards",)
+
+
+def _raster(file: Path, values: Floats, axis: str) -> tuple[Floats, float]:
+    """The places along an axis, and their mean step."""
+    places = np.unique(values)
+    steps = np.diff(places)
+    mean = float(steps.mean()) if steps.size else 0.0
+    if places.size < PIXELS_PER_SIDE[0] or not (np.abs(steps - mean) <= _EVEN * mean).all():
+        raise ReadError(f"{file}: points of WSxM at {places.size} places along {axis} that are no even raster")
+    return places, mean
