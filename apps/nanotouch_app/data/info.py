@@ -6,13 +6,16 @@ from __future__ import annotations
 import argparse
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from nanotouch import curves, formats, images
+import nanotouch as nt
+from nanotouch import formats
 from nanotouch.errors import MissingExtra, ReadError
-from nanotouch.images.words import lengths
 
 from nanotouch_app.common import output
+
+if TYPE_CHECKING:  # what only one kind of file needs takes as long to load as an image to list
+    from nanotouch import curves, images
 
 _META = (("instrument", ""), ("date", ""), ("spring constant", "N/m"), ("sensitivity", "m/V"), ("setpoint", "N"))
 MCAP = b"\x89MCAP0\r\n"  # how a recording begins
@@ -54,7 +57,8 @@ def _described(file: Path) -> Answer:
     if file.suffix.lower() == ".toml" and file.is_file():
         raise ReadError(f"{file}: a TOML file: nanotouch plan reads a scene, nanotouch rig check a rig")
     problems: list[ReadError | MissingExtra] = []
-    for kind in (_describe_curves, _describe_image):
+    kinds = (_describe_curves, _describe_image)
+    for kind in kinds[::-1] if formats.looks_like_image(file) else kinds:
         if kind is _describe_curves and formats.is_image(file):
             continue
         try:
@@ -64,6 +68,8 @@ def _described(file: Path) -> Answer:
     missing = [error for error in problems if isinstance(error, MissingExtra)]
     if missing:
         raise missing[0]
+    if len(problems) > 1 and formats.looks_like_image(file):
+        problems.reverse()
     reasons = [str(error).removeprefix(f"{file}: ") for error in problems]
     if len(set(reasons)) == 1:
         raise problems[0]
@@ -90,7 +96,7 @@ def _describe_recording(file: Path) -> Answer:
 
 
 def _describe_thermal(file: Path) -> Answer:
-    found = curves.thermal_spectrum(file)
+    found = nt.curves.thermal_spectrum(file)
     lines = [f"{file.name}: thermal spectrum, {found.frequency.size} points up to {found.frequency[-1] / 1e3:.4g} kHz"]
     for name, value, unit in (
         ("sensitivity", found.sensitivity, "m/V"),
@@ -105,7 +111,9 @@ def _describe_thermal(file: Path) -> Answer:
 
 
 def _describe_image(file: Path) -> Answer:
-    listed = images.channels(file)
+    from nanotouch.images.words import lengths
+
+    listed = nt.images.channels(file)
     lines = [f"{file.name}: AFM image, {len(listed)} channel{'s' if len(listed) > 1 else ''}"]
     for channel in listed:
         shape = "? pixels" if channel.shape is None else f"{channel.shape[1]} x {channel.shape[0]} pixels"
@@ -115,7 +123,7 @@ def _describe_image(file: Path) -> Answer:
         lines.append(f"  {channel.name:24} {channel.kind:11} {shape}, {size}, unit {unit}{mark}")
     facts: dict[str, Any] = {"kind": "image", "channels": [_channel(channel) for channel in listed]}
     try:
-        topography = images.read(file)
+        topography = nt.images.read(file)
     except ReadError as error:
         reason = str(error).removeprefix(f"{file}: ")
         return [*lines, f"  cannot be touched as it is: {reason}"], facts | {"cannot_be_touched": reason}
@@ -141,7 +149,7 @@ def _channel(channel: images.Channel) -> dict[str, Any]:
 
 
 def _describe_curves(file: Path) -> Answer:
-    found = curves.read(file)
+    found = nt.curves.read(file)
     first = found[0]
     lines = [f"{file.name}: {len(found)} force curve{'s' if len(found) > 1 else ''}, {first.meta.get('format', '')}"]
     for key, unit in _META:

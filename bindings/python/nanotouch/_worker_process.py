@@ -97,7 +97,7 @@ def _prepare(job: str, file: Path) -> None:
     elif job == "maps.read":
         wanted = ("xarray", "h5netcdf")
     elif ending in _NEEDED:
-        wanted = _NEEDED[ending]
+        wanted = _NUMPY if job.startswith("images.") else _NEEDED[ending]
     elif ending not in _OWN:
         wanted = _FOR_IMAGES if job.startswith("images.") else ("h5py", "afmformats")
     for name in wanted:

@@ -15,6 +15,7 @@ from typing import Literal
 Kind = Literal["images", "curves"]
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
+_NANOSCOPE_HEADER, _IGOR_LAYERS = 1 << 20, 64 + 76  # length, and place of the count of pictures [byte]
 HEAD = 1024  # bytes at the start of a file by which it is recognised
 
 _GWY = "open it in Gwyddion and save it as .gwy"
@@ -174,6 +175,21 @@ def is_image(file: Path) -> bool:
     head = _head(file)
     read = any(known.kind == "images" and known.reader and file.suffix.lower() in known.endings for known in FORMATS)
     return read and refusal(file, head, "curves") is not None
+
+
+def looks_like_image(file: Path) -> bool:
+    """Whether it is to be tried as an image first: by the header of NanoScope and Igor, else by an ending that curves
+    do not have."""
+    head = _head(file)
+    if head.startswith(b"\\*File list"):
+        with file.open("rb") as stream:
+            return b"\\*Ciao force" not in stream.read(_NANOSCOPE_HEADER)
+    if head[:2] in (b"\5\0", b"\0\5"):
+        layers = head[_IGOR_LAYERS : _IGOR_LAYERS + 4]
+        return len(layers) == 4 and any(layers)
+    ending = file.suffix.lower()
+    kinds = {known.kind for known in FORMATS if known.reader and ending in known.endings}
+    return kinds == {"images"} and not head.startswith(b"\\*")
 
 
 def markdown(kind: Kind) -> str:

@@ -6,21 +6,46 @@
 >>> report = nt.curves.analyse(curve)                                       # doctest: +SKIP
 """
 
-from .adhesion import Adhesion, adhesion_of
-from .analysis import analyse, force_gap, sensitivity
-from .baseline import Baseline, Bend, Wave
-from .calibration import Calibration, CalibrationTable, parse_sensitivity
-from .chain import Chain, chains
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .._io.later import at_first_use
 from .curve import ForceCurve, Segment
-from .events import Rupture
 from .reading import Stream, read, stream
-from .report import CurveReport
 from .sader import hydrodynamic_function, sader
-from .snap import Lever, Recalibrated, recalibrate, write_table
-from .synthesis import synthesise
-from .thermal import ThermalTune, thermal_tune
-from .thermal_file import ThermalSpectrum, thermal_spectrum
-from .writing import write
+
+if TYPE_CHECKING:
+    from .adhesion import Adhesion, adhesion_of
+    from .analysis import analyse, force_gap, sensitivity
+    from .baseline import Baseline, Bend, Wave
+    from .calibration import Calibration, CalibrationTable, parse_sensitivity
+    from .chain import Chain, chains
+    from .events import Rupture
+    from .report import CurveReport
+    from .snap import Lever, Recalibrated, recalibrate, write_table
+    from .synthesis import synthesise
+    from .thermal import ThermalTune, thermal_tune
+    from .thermal_file import ThermalSpectrum, thermal_spectrum
+    from .writing import write
+
+__getattr__, __dir__ = at_first_use(
+    __name__,
+    {
+        "adhesion": "Adhesion adhesion_of",
+        "analysis": "analyse force_gap sensitivity",
+        "baseline": "Baseline Bend Wave",
+        "calibration": "Calibration CalibrationTable parse_sensitivity",
+        "chain": "Chain chains",
+        "events": "Rupture",
+        "report": "CurveReport",
+        "snap": "Lever Recalibrated recalibrate write_table",
+        "synthesis": "synthesise",
+        "thermal": "ThermalTune thermal_tune",
+        "thermal_file": "ThermalSpectrum thermal_spectrum",
+        "writing": "write",
+    },
+)
 
 __all__ = [
     "Adhesion",

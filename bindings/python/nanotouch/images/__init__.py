@@ -5,31 +5,63 @@
 >>> topography, report = nt.images.prepare(nt.images.read("scan.ibw"))      # doctest: +SKIP
 """
 
-from .apex import ApexRadius, apex_radius
-from .blind import TipEstimate, estimate_tip
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .._io.later import at_first_use
 from .channel import Channel, Plane
-from .despeckling import DespeckleReport, despeckle
-from .fields import planes, write_planes
-from .filling import fill
-from .filters import gaussian, median
-from .level_report import Candidate, LevelReport, LevelStep
-from .levelling import level, prepare
-from .masking import mask_above, mask_grains, mask_image
-from .moving import moved
 from .parameters import Parameter, parameters
-from .particles import GrainTable, grains
-from .pictures import draw
-from .pyramid import MipLevel, mip_levels
 from .reading import channels, read
-from .scars import ScarReport, repair_scars
 from .section import Section, histogram, section
 from .spectrum import Spectrum, spectrum
-from .statistics import Roughness, roughness
-from .terraces import Terrace
-from .tips import Paraboloid, RoundedCone, dilate, erode
 from .topography import READY, Topography
-from .values import ValueMap, read_values
-from .writing import write
+
+if TYPE_CHECKING:
+    from .apex import ApexRadius, apex_radius
+    from .blind import TipEstimate, estimate_tip
+    from .despeckling import DespeckleReport, despeckle
+    from .fields import planes, write_planes
+    from .filling import fill
+    from .filters import gaussian, median
+    from .level_report import Candidate, LevelReport, LevelStep
+    from .levelling import level, prepare
+    from .masking import mask_above, mask_grains, mask_image
+    from .moving import moved
+    from .particles import GrainTable, grains
+    from .pictures import draw
+    from .pyramid import MipLevel, mip_levels
+    from .scars import ScarReport, repair_scars
+    from .statistics import Roughness, roughness
+    from .terraces import Terrace
+    from .tips import Paraboloid, RoundedCone, dilate, erode
+    from .values import ValueMap, read_values
+    from .writing import write
+
+__getattr__, __dir__ = at_first_use(
+    __name__,
+    {
+        "apex": "ApexRadius apex_radius",
+        "blind": "TipEstimate estimate_tip",
+        "despeckling": "DespeckleReport despeckle",
+        "fields": "planes write_planes",
+        "filling": "fill",
+        "filters": "gaussian median",
+        "level_report": "Candidate LevelReport LevelStep",
+        "levelling": "level prepare",
+        "masking": "mask_above mask_grains mask_image",
+        "moving": "moved",
+        "particles": "GrainTable grains",
+        "pictures": "draw",
+        "pyramid": "MipLevel mip_levels",
+        "scars": "ScarReport repair_scars",
+        "statistics": "Roughness roughness",
+        "terraces": "Terrace",
+        "tips": "Paraboloid RoundedCone dilate erode",
+        "values": "ValueMap read_values",
+        "writing": "write",
+    },
+)
 
 __all__ = [
     "READY",
