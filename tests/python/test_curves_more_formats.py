@@ -252,7 +252,9 @@ def asylum(path: Path, dwell: int, facts: dict[str, object]) -> Path:
     return synthetic.write_ibw(path, np.stack([-z, deflection, -z], axis=-1), ["Raw", "Defl", "ZSnsr"], note=note)
 
 
-@pytest.mark.parametrize("facts", [{}, {"Indexes": "0,150,719,"}, {"Indexes": "0,299,719,", "DwellTime": 0.2}])
+@pytest.mark.parametrize("facts", [
+    {}, {"Indexes": "0,150,719,"}, {"Indexes": "0,299,719,", "DwellTime": 0.2}, {"Indexes": "0,299,598"},
+])  # fmt: skip
 def test_a_dwell_of_an_asylum_curve_is_a_pause_whatever_its_note_says(facts: dict[str, object], tmp_path: Path) -> None:
     """It was part of the approach or of the retraction. Indexes that z contradicts were believed."""
     (curve,) = curves.read(asylum(tmp_path / "a.ibw", 120, facts))
@@ -271,3 +273,16 @@ def test_a_turn_without_a_dwell_is_no_pause(tmp_path: Path) -> None:
     path = synthetic.write_ibw(tmp_path / "b.ibw", wave, ["Raw", "Defl", "ZSnsr"], note=facts)
     (curve,) = curves.read(path)
     assert [segment.role for segment in curve.segments] == ["approach", "retract"]
+
+
+def test_heights_that_count_the_other_way_are_refused_whatever_the_indexes(tmp_path: Path) -> None:
+    """Both ends of such a curve are its deepest place, which is no dwell."""
+    way = np.linspace(0.0, 1e-6, 300)
+    z = np.concatenate([way, way[::-1]])
+    wave = np.stack([-z, 0.0 * z, -z], axis=-1)
+    note: dict[str, object] = {"InvOLS": 5e-8, "SpringConstant": "0,1", "Indexes": "0,299,599", "Direction": "NaN,1,-1"}
+    path = synthetic.write_ibw(tmp_path / "a.ibw", wave, ["Raw", "Defl", "ZSnsr"], note=note)
+    with pytest.raises(ReadError, match="the sign of its height is reversed"):
+        curves.read(path)
+    path = synthetic.write_ibw(tmp_path / "b.ibw", -wave, ["Raw", "Defl", "ZSnsr"], note=note)
+    assert curves.read(path)[0].spring_constant == 0.1

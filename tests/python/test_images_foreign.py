@@ -5,11 +5,15 @@ from __future__ import annotations
 
 import re
 import struct
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import synthetic
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "corpus"))
+import surf_image
 from nanotouch import images
 from nanotouch.errors import ReadError
 
@@ -168,3 +172,28 @@ def test_a_range_of_three_numbers_is_refused_in_words(tmp_path: Path) -> None:
     (tmp_path / "a.sxm").write_bytes(header + (PICTURE * 1e-9).astype(">f4").tobytes())
     with pytest.raises(ReadError, match=re.escape("SCAN_RANGE is '1.2E-6 8E-7 5E-7', expected two lengths [m]")):
         images.read(tmp_path / "a.sxm")
+
+
+@pytest.mark.parametrize(("at", "form", "value", "message"), [
+    (18, "h", 3, "an object of the type 3, expected 2, a surface"),
+    (290, "h", 4, "the inversion 4, expected 0 .. 3"),
+    (128, "f", 0.0, "a spacing of heights of 0, expected a positive number"),
+    (164, "5s", b"Phase", "is named 'Phase', which is no height"),
+])  # fmt: skip
+def test_what_is_no_surface_of_digital_surf(tmp_path: Path, at: int, form: str, value: object, message: str) -> None:
+    path = surf_image.write(np.random.default_rng(1), tmp_path, plain=True).path
+    content = bytearray(path.read_bytes())
+    struct.pack_into(f"<{form}", content, at, value)
+    path.write_bytes(bytes(content))
+    with pytest.raises(ReadError, match=re.escape(message)):
+        images.read(path)
+
+
+def test_a_height_beyond_the_limits_of_digital_surf_is_told(tmp_path: Path) -> None:
+    """A point that was not measured, though the header says that there is none, for one."""
+    path = surf_image.write(np.random.default_rng(1), tmp_path, plain=True).path
+    content = bytearray(path.read_bytes())
+    (low,) = struct.unpack_from("<i", content, 100)
+    struct.pack_into("<i", content, 512, low - 2)
+    path.write_bytes(bytes(content))
+    assert any("1 heights beyond its lowest and highest" in note for note in images.read(path).notes)

@@ -132,7 +132,7 @@ def text_of(note: str, key: str) -> str:
 def stated(note: str, key: str) -> float | None:
     """A positive number of the note."""
     try:
-        value = float(text_of(note, key))
+        value = float(text_of(note, key).replace(",", "."))
     except ValueError:
         return None
     return value if 0.0 < value < np.inf else None
@@ -186,7 +186,11 @@ def _contradicts(runs: list[slice], z: Floats, known: NDArray[np.bool_]) -> bool
         way = z[run][known[run]]
         if way.size and min(float(way[0]), float(way[-1])) - float(way.min()) > _REST * travel:
             return True
-    return len(runs) == 2 and _dwell_of(z, known) is not None
+    dwell = _dwell_of(z, known)
+    if dwell is None:
+        return False
+    inside = max(runs, key=lambda run: min(run.stop, dwell[1]) - max(run.start, dwell[0]))
+    return float(np.ptp(z[inside][known[inside]])) > _REST * travel
 
 
 def _dwell_of(z: Floats, known: NDArray[np.bool_]) -> tuple[int, int] | None:
@@ -202,7 +206,7 @@ def _dwell_of(z: Floats, known: NDArray[np.bool_]) -> tuple[int, int] | None:
     first = int(far[far < deepest][-1]) + 1 if (far < deepest).any() else 0
     last = int(far[far > deepest][0]) if (far > deepest).any() else z.size
     ways = first, z.size - last
-    if last - first < _DWELL * min(ways):
+    if min(ways) < MIN_POINTS or last - first < _DWELL * min(ways):
         return None
     turns = [round(_TURN / (1.0 - _TURN) * points) for points in ways]
     return first + turns[0], last - turns[1]

@@ -35,7 +35,7 @@ _LIST_END = re.compile(r'"?\\\*(?:Force file|File) list end')
 _NAME = re.compile(r"[A-Za-z]\w*_(?:(?:Ex|Rt)(?:_\w+)?|\w+_(?:Ex|Rt))")
 _PAIR = re.compile(r'"?([num~\xb5\u03bc]m)"?[\s;,]+"?([pnu~\xb5\u03bc]N|[num]m|m?V)"?')
 _END = 0.05  # of a way, whose readings tell where it ended
-_STANDS_OUT = 8.0  # of the scatter there
+_STANDS_OUT = 5.0  # of the scatter between neighbours; medians of a few of them differ by one
 _HEIGHTS = (("z_sensor", "height (measured)"), ("height_sensor", "height (measured)"), ("zsensor", "height (measured)"),
             ("ramp", "height (piezo)"), ("height", "height (piezo)"), ("z", "height (piezo)"))  # fmt: skip
 

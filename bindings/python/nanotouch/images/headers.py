@@ -5,7 +5,7 @@
 |---|---|---|
 | Igor (.ibw) | (check sum and lengths: before any reader sees it) | size of the scan in the note and pixel size |
 | Nanosurf (.nid) | file shorter or longer than its channels | size, points and lines in the scan's section |
-| Digital Surf (.sur) | file shorter or longer than its pixels | |
+| Digital Surf (.sur) | file shorter or longer than its pixels; no surface, no height | lowest and highest height |
 | PicoView (.mi) | file shorter or longer than its channels | |
 
 No format promises the second column, so it does not refuse a file. The others say nothing twice, or their reader
@@ -23,11 +23,12 @@ from typing import Any
 import numpy as np
 
 from ..errors import ReadError
-from .channel import Plane
+from .channel import Plane, other_kind
 from .checks import LENGTHS
 
 Meta = Mapping[str, Any]
 _SURF, _SURF_HEADER = b"DIGITAL SURF", 512
+_SURFACE, _INVERSIONS = 2, 3  # type of an object; highest of the ways to turn it over
 _TOLERANCE = 2e-3  # of numbers printed with few digits
 _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
 
@@ -113,14 +114,25 @@ def _digital_surf(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     head = file.read_bytes()[:_SURF_HEADER]
     if not head.startswith(_SURF):
         return  # packed
-    (bits,), (comment,), (private,) = (struct.unpack_from("<h", head, at) for at in (98, 334, 336))
-    (spacing,) = struct.unpack_from("<f", head, 128)
-    if spacing < 0.0:
+    type_, bits, inversion, comment, private = (struct.unpack_from("<h", head, at)[0] for at in (18, 98, 290, 334, 336))
+    (spacing,), (low, high) = struct.unpack_from("<f", head, 128), struct.unpack_from("<2i", head, 100)
+    name = head[164:180].decode("latin-1").strip(" \0")
+    if type_ != _SURFACE:
+        raise ReadError(f"{file}: an object of the type {type_}, expected {_SURFACE}, a surface")
+    if not 0 <= inversion <= _INVERSIONS:
+        raise ReadError(f"{file}: its header states the inversion {inversion}, expected 0 .. {_INVERSIONS}")
+    if not spacing > 0.0:
         raise ReadError(f"{file}: its header states a spacing of heights of {spacing:g}, expected a positive number")
+    if other_kind(name) or "intensity" in name.casefold():
+        raise ReadError(f"{file}: what it measured is named {name!r}, which is no height")
     nx, width = plane.values.shape[1], bits // 8
     held = file.stat().st_size - _SURF_HEADER - comment - private
     _check_held(file, held, plane.values.size * width, nx * width)
-    yield from ()
+    raw = np.fromfile(file, f"<i{width}", plane.values.size, offset=_SURF_HEADER + comment + private)
+    beyond = int(np.count_nonzero((raw < low) | (raw > high)))
+    missing = int(np.count_nonzero(np.isnan(plane.values)))
+    if beyond > missing:
+        yield f"its header contradicts itself: {beyond - missing} heights beyond its lowest and highest ({low}, {high})"
 
 
 def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
