@@ -31,7 +31,7 @@ GRID = {
     "big": [False, True],
     "down": [False, True],
     "square": [True, False],
-    "unit": ["m", ""],
+    "unit": ["m", "", "V"],
 }
 
 
@@ -60,7 +60,8 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     )
     best, others = _ranked(planes)
     told = (("missing", "line", "row"),) if c["stopped"] else ()
-    return Made(FORMAT, path, c, Image(best, others), told=told)
+    refused = "its numbers are in V" if c["unit"] == "V" else ""
+    return Made(FORMAT, path, c, Image(best, others), told=told, must_refuse=refused)
 
 
 def _ranked(planes: dict[str, Plane]) -> tuple[tuple[Plane, ...], tuple[Plane, ...]]:

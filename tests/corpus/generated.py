@@ -29,6 +29,7 @@ MODULES = (
     "nanoscope_force",
     "jpk",
     "asylum_curve",
+    "nanoscope_text",
     "nova_curve",
     "nanonis_curve",
     "asylum_image",
@@ -38,6 +39,7 @@ MODULES = (
     "wsxm_image",
     "text_image",
     "gwyddion_image",
+    "gsf_image",
     "hdf5_image",
 )
 

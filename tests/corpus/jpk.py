@@ -34,6 +34,7 @@ GRID = {
     "default": ["as chained", "volts"],
     "offset": [0.0, 1.0],
     "units": ["SI", "mV nm nN"],
+    "between": ["=", " = ", ": ", " "],  # key and value of a property
 }
 NAMES = {"a": "approach", "r": "retract", "h": "hold", "p": "pause", "m": "modulation"}
 ENDINGS = {"curve": "jpk-force", "map": "jpk-force-map", "QI map": "jpk-qi-data", "QI series": "jpk-qi-series"}
@@ -76,7 +77,8 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     if c["version"] == "2.0":
         archive["shared-data/header.properties"] = shared(c, told, points, segments, setpoint)
     file = folder / f"curve.{ENDINGS[c['kind']]}"
-    _zip(file, archive, zipfile.ZIP_DEFLATED if c["packed"] == "deflated" else zipfile.ZIP_STORED)
+    method = zipfile.ZIP_DEFLATED if c["packed"] == "deflated" else zipfile.ZIP_STORED
+    _zip(file, archive, method, c["between"])
     return Made(FORMAT, file, c, Curves(tuple(curves)), given=_given(c, held), told=_told(c))
 
 
@@ -182,7 +184,7 @@ def _columns(
     return {name: data for name, (data, _) in stored.items()}, part
 
 
-def _zip(file: Path, archive: dict[str, Any], method: int) -> None:
+def _zip(file: Path, archive: dict[str, Any], method: int, between: str) -> None:
     with zipfile.ZipFile(file, "w", method) as packed:
         known: set[str] = set()
         for name, content in archive.items():
@@ -193,7 +195,7 @@ def _zip(file: Path, archive: dict[str, Any], method: int) -> None:
                     packed.writestr(folder, b"")
             if isinstance(content, dict):
                 lines = [
-                    f"{key}={str(value) if not isinstance(value, float) else repr(value).upper()}"
+                    f"{key}{between}{str(value) if not isinstance(value, float) else repr(value).upper()}"
                     for key, value in content.items()
                 ]
                 content = "\n".join(["#Wed Jun 30 13:48:15 BST 2021", *lines, ""]).encode("latin-1")

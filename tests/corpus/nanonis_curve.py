@@ -23,6 +23,8 @@ GRID = {
     "mark": [False, True],
     "encoding": ["utf-8", "latin-1", "shift-jis"],
     "tail": ["", "NaN"],
+    "decimals": [".", ","],
+    "cut": [0, 2, 5, 9],  # characters of a last row
 }
 
 
@@ -30,6 +32,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     c = chosen(random, GRID, plain)
     if c["encoding"] != "utf-8":
         c["mark"] = False
+    c["tail"] = "" if c["cut"] else c["tail"]
     held = lever(random)
     n = int(random.integers(80, 160))
     approach, retract = motion(random, held, [("approach", 300), ("retract", 300)])
@@ -52,7 +55,8 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
         parts.append(Part(role, z[turned], bend, force))
     given = {} if by_force else {"spring_constant": held.spring_constant}
     curve = Curve(tuple(parts), None if by_force else held.spring_constant, None)
-    return Made(FORMAT, path, c, Curves((curve,)), given=given)
+    told = (("cut off",),) if c["cut"] else ()
+    return Made(FORMAT, path, c, Curves((curve,)), given=given, told=told)
 
 
 def _column(move: tuple[str, Array, Array], z: Array, scale: float) -> Array:
@@ -89,5 +93,8 @@ def _file(c: dict[str, Any], z: Array, columns: dict[str, Array], order: list[st
     ]
     if c["tail"]:
         lines += ["\t".join(["NaN"] * len(names))] * 3
-    text = c["ends"].join([*lines, ""])
+    if c["cut"]:
+        lines.append(lines[-1][: -c["cut"]])
+    lines = [*lines[: len(head)], *(line.replace(".", c["decimals"]) for line in lines[len(head) :])]
+    text = c["ends"].join(lines if c["cut"] else [*lines, ""])
     return text.encode("utf-8-sig" if c["mark"] else c["encoding"], "replace")

@@ -32,6 +32,7 @@ GRID = {
     "ends": ["\r\n", "\n"],
     "aborted": [False, True],
     "sentinel": [False, True],
+    "halved": [False, True],  # samples that the image's section states
     "sync": ["middle", "late", "of 128 points"],
     "name": ["force.spm", "force.000", "force.003", "force.pfc"],
 }
@@ -58,7 +59,8 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     data = np.concatenate([*blocks, np.zeros((many - count) * 2 * max(points), int)])
     path = folder / c["name"]
     path.write_bytes(_file(c, held, data, points, ramp, grid, sync))
-    return Made(FORMAT, path, c, Curves(tuple(curves)), given=_given(c, held), told=_told(c))
+    refused = "its image states half of the samples of a curve" if c["halved"] else ""
+    return Made(FORMAT, path, c, Curves(tuple(curves)), given=_given(c, held), told=_told(c), must_refuse=refused)
 
 
 def _consistent(c: dict[str, Any]) -> dict[str, Any]:
@@ -66,6 +68,8 @@ def _consistent(c: dict[str, Any]) -> dict[str, Any]:
     fixed: dict[str, Any] = {"bytes": wide, "aborted": c["aborted"] and c["kind"] == "volume"}
     if c["kind"] != "ramp":
         fixed |= {"branches": "equal", "sensor": "none"}
+    if c["kind"] == "capture" or c["branches"] != "equal" or c["aborted"]:
+        fixed |= {"halved": False}
     if c["kind"] != "capture":
         fixed |= {"sentinel": False, "sync": "middle", "name": c["name"] if c["name"] != "force.pfc" else "force.spm"}
     return c | fixed
@@ -177,7 +181,8 @@ def _file(
     lines += ["@4:Trig Threshold Deflection: V [Sens. DeflSens] (0.0003750000 V/LSB) 1.200000 V"]
     lines += ['@4:Ramp channel: S [Zsweep] "Z"']
     lines += [f"@4:{c['ramp size']} Zsweep: V [Sens. Zsens] (0.006713765 V/LSB) {ramp:.7g} V"]
-    lists, body = _lists(c, held, data, samples, ramp, grid)
+    stated = f"{points[1] // 2} {points[0] // 2}" if c["halved"] else samples
+    lists, body = _lists(c, held, data, stated, ramp, grid)
     text = "".join(f"\\{line}{c['ends']}" for line in [*lines, *lists, "*File list end"])
     head = text.encode("latin-1") + b"\x1a"
     assert len(head) <= OFFSET, "a longer header than its place"

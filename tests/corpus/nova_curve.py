@@ -23,6 +23,7 @@ GRID = {
     "padding": ["none", "approach", "both"],
     "trailing": ["", "empty line", "gap"],
     "digits": [6, 4],
+    "cut": [0, 1, 3],  # characters of a last row
 }
 
 
@@ -30,6 +31,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     c = chosen(random, GRID, plain)
     if c["encoding"] == "utf-16":
         c["mark"] = False
+    c["trailing"] = "" if c["cut"] else c["trailing"]
     held = lever(random)  # its sensitivity is in m/nA here; given is m/A
     n = int(random.integers(80, 160))
     moves = motion(random, held, [("approach", 300), ("retract", 300)])
@@ -46,7 +48,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
         lines.append(c["gap"].join(texts).replace(".", c["decimals"]) + (c["gap"] if c["trailing"] == "gap" else ""))
     if c["trailing"] == "empty line":
         lines.append("")
-    text = c["ends"].join([*lines, ""])
+    text = c["ends"].join([*lines, lines[-1][: -c["cut"]] if c["cut"] else ""])
     path = folder / "Curve_DFL_Height_51.txt"
     path.write_bytes(text.encode("utf-8-sig" if c["mark"] else c["encoding"]))
     parts = []
@@ -56,4 +58,5 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
         parts.append(Part(role, heights[turned], bend[turned], held.spring_constant * bend[turned]))
     curve = Curve(tuple(parts), held.spring_constant, held.sensitivity * 1e9)
     given: dict[str, Any] = {"spring_constant": held.spring_constant, "sensitivity": held.sensitivity * 1e9}
-    return Made(FORMAT, path, c, Curves((curve,)), given=given)
+    told = (("cut off",),) if c["cut"] else ()
+    return Made(FORMAT, path, c, Curves((curve,)), given=given, told=told)

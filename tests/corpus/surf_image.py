@@ -22,6 +22,9 @@ GRID = {
     "offset": [0.0, 1.5],
     "comment": [b"", b"made for a test"],
     "square": [True, False],
+    "type": [2, 2, 3, 5],  # surface, binary image, series of surfaces
+    "measured": ["Z", "Z", "Height", "Phase", "Intensity"],
+    "inversion": [0, 1, 2, 3],
 }
 UNITS = {"m": 1.0, "mm": 1e-3, "\xb5m": 1e-6, "nm": 1e-9}
 
@@ -46,8 +49,11 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     path = folder / "surface.sur"
     head = _header(c, (ny, nx), (low, high), (dx, dy, dz), offset)
     path.write_bytes(head + c["comment"] + raw[::-1].astype(f"<i{c['bits'] // 8}").tobytes())
-    plane = Plane("height", heights, (dy * lateral, dx * lateral), free=offset != 0)
-    return Made(FORMAT, path, c, Image((plane,)))
+    turned = {0: heights, 1: -heights, 2: -heights[:, ::-1], 3: -heights[::-1]}[c["inversion"]]
+    plane = Plane("height", turned, (dy * lateral, dx * lateral), free=offset != 0)
+    refused = "it is no surface" if c["type"] != 2 else ""
+    refused = "it is no height" if c["measured"] in ("Phase", "Intensity") else refused
+    return Made(FORMAT, path, c, Image((plane,)), must_refuse=refused)
 
 
 def _header(
@@ -61,11 +67,11 @@ def _header(
         return words.encode("latin-1")[:length].ljust(length)
 
     units = [text(c["lateral"], 16), text(c["lateral"], 16), text(c["vertical"], 16)]
-    head = b"DIGITAL SURF" + struct.pack("<4h", 0, 1, 1, 2) + text("surface", 30) + text("nobody", 30)
+    head = b"DIGITAL SURF" + struct.pack("<4h", 0, 1, 1, c["type"]) + text("surface", 30) + text("nobody", 30)
     head += struct.pack("<5h", 0, 6, 1, int(c["missing"]), 1) + bytes(8) + struct.pack("<h", c["bits"])
     head += struct.pack("<5i", *limits, shape[1], shape[0], shape[0] * shape[1]) + struct.pack("<3f", *steps)
-    head += text("X", 16) + text("Y", 16) + text("Z", 16) + b"".join(units) + b"".join(units)
-    head += struct.pack("<3f", 1, 1, 1) + struct.pack("<3h", 0, 0, 0) + bytes(12)
+    head += text("X", 16) + text("Y", 16) + text(c["measured"], 16) + b"".join(units) + b"".join(units)
+    head += struct.pack("<3f", 1, 1, 1) + struct.pack("<3h", 0, c["inversion"], 0) + bytes(12)
     head += struct.pack("<7h", 44, 46, 11, 3, 11, 2022, 4) + struct.pack("<f", 1.0) + bytes(10)
     head += struct.pack("<2h", len(c["comment"]), 0) + bytes(128) + struct.pack("<3f", 0.0, 0.0, offset)
     return head.ljust(512, b"\0")

@@ -7,6 +7,7 @@ heights; integers span it.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ GRID = {
     "copyright": ["UAM", "Nanotec Electronica", "WSxM solutions"],
     "encoding": ["latin-1", "utf-8"],
     "current": [False, True],
+    "decimals": [".", ","],
 }
 UNITS = {"nm": 1e-9, "\xb5m": 1e-6, "\xc5": 1e-10, "pm": 1e-12}
 STORED = {"double": "<f8", "float": "<f4", "int16": "<i2"}
@@ -69,7 +71,8 @@ def _header(c: dict[str, Any], shape: tuple[int, int], size: tuple[float, ...], 
         del sections["General Info"]["Image Data Type"]
     lines = []
     for name, fields in sections.items():
-        lines += [f"[{name}]", "", *(f"    {key}: {value}" for key, value in fields.items()), ""]
+        told = {key: re.sub(r"^(-?\d+)\.(\d+(?: \S+)?)$", rf"\1{c['decimals']}\2", str(v)) for key, v in fields.items()}
+        lines += [f"[{name}]", "", *(f"    {key}: {value}" for key, value in told.items()), ""]
     body = "\r\n".join([*lines, "[Header end]", ""])
     start = f"WSxM file copyright {c['copyright']}\r\nSxM Image file\r\nImage header size: "
     total = len((start + "0000\r\n\r\n" + body).encode(c["encoding"]))

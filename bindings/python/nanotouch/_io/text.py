@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 _ROW = re.compile(r"[-+\d.,;\seE]+|(?i:[-+\d.,;\se]|nan|bad|inf(?:inity)?)+")
 _WITH_COMMA = re.compile(
-    r"(?P<head>[^\d]*[:=]\s*[-+]?)(?P<before>\d+),(?P<after>\d+)(?P<tail>(?:[eE][-+]?\d+)?\s*[^\d\s,.]*)\s*"
+    r"(?P<head>[^:=]*[:=]\s*[-+]?)(?P<before>\d+),(?P<after>\d+)(?P<tail>(?:[eE][-+]?\d+)?\s*[^\d\s,.]*)\s*"
 )
 _LOOKED_AT = 200  # rows
 _TAIL, _ALIKE = 20000, 8  # characters at the end, and rows there, that tell how numbers are written

@@ -99,7 +99,12 @@ def _listed(wave: _Wave) -> list[Channel]:
 def _meaning(wave: _Wave, name: str) -> tuple[str | None, str]:
     """Unit and kind of a channel."""
     unit = _unit(wave, name) if wave.note and wave.labelled else wave.data_unit or None
-    if unit in LENGTHS and wave.data_unit and wave.data_unit not in LENGTHS and not _stated_unit(wave, name):
+    if (
+        (unit is None or unit in LENGTHS)
+        and wave.data_unit
+        and wave.data_unit not in LENGTHS
+        and not _stated_unit(wave, name)
+    ):
         unit = wave.data_unit  # the name says a length, the wave does not
     plain = name.casefold()
     other = next((part for part in OTHER_NAMES if part in plain and part != "potential"), "")

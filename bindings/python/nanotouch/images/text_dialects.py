@@ -45,8 +45,8 @@ def _matrix(lines: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:
     header += [f"# {key}: {' '.join(sides[axis])}" for axis, key in (("X", "Width"), ("Y", "Height")) if axis in sides]
     unit = sides.get("Z", ("", ""))[1]
     header += [f"# Value units: {unit}"] if unit else []
-    rows = [line for line in lines if text.is_row(line)]
-    return header + rows, ("the first row of a WSxM matrix is taken as its upper edge",)
+    first = next((number for number, line in enumerate(lines) if text.is_row(line)), len(lines))
+    return [*header, *lines[first:]], ("the first row of a WSxM matrix is taken as its upper edge",)
 
 
 def _points(file: Path, lines: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:

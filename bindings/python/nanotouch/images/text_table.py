@@ -166,6 +166,8 @@ def _tables(file: Path, lines: list[str]) -> list[_Table]:
         stated = _STATED.match(line)
         if stated is None or (key := stated["key"].casefold()) not in _DECIDES:
             continue
+        if re.search(r"\d,\d", stated["value"]) and key not in ("channel", "file format"):
+            raise ReadError(f"{file}: its header states {stated['key']!r} as {stated['value']!r}: a comma in a number")
         if found[-1].columns:
             found.append(_Table())
         _agree(file, stated["key"], found[-1].header.setdefault(key, stated["value"].strip()), stated["value"].strip())
