@@ -53,6 +53,9 @@ def test_two_matrices_under_one_header_are_refused(tmp_path: Path) -> None:
 def test_a_matrix_that_is_cut_inside_its_last_number_is_refused(tmp_path: Path, cut: int) -> None:
     with pytest.raises(ReadError, match="cut off"):
         images.read(text(tmp_path / "a.txt", (GWY + rows(PICTURE))[:-cut]))
+    missing = rows(PICTURE).replace(f"{PICTURE[2, 3]:.3f}", "nan")
+    with pytest.raises(ReadError, match="cut off"):
+        images.read(text(tmp_path / "c.txt", (GWY + missing)[:-cut]))
     check(images.read(text(tmp_path / "b.txt", (GWY + rows(PICTURE))[:-1])))  # whole, without an end of line
 
 
@@ -197,3 +200,25 @@ def test_a_height_beyond_the_limits_of_digital_surf_is_told(tmp_path: Path) -> N
     struct.pack_into("<i", content, 512, low - 2)
     path.write_bytes(bytes(content))
     assert any("1 heights beyond its lowest and highest" in note for note in images.read(path).notes)
+
+
+def test_a_row_with_a_comment_behind_it_is_a_row(tmp_path: Path) -> None:
+    check(images.read(text(tmp_path / "a.txt", GWY + rows(PICTURE)[:-1] + " # the end\n")))
+
+
+@pytest.mark.parametrize("between", [" = ", ": ", "="])
+@pytest.mark.parametrize("key", ["Bit2nm", "bit2nm"])
+def test_the_scale_of_spip_counts_however_it_is_written(tmp_path: Path, between: str, key: str) -> None:
+    header = SPIP.replace(" = ", between).replace("Bit2nm", key).replace("0.1", "1E-1")
+    check(images.read(text(tmp_path / "a.txt", header + rows(PICTURE * 10, "%.2f"))), atol=1e-12)
+    with pytest.raises(ReadError, match="'y-pixels' as 18, its table has 8"):
+        images.read(text(tmp_path / "b.txt", header.replace(f"y-pixels{between}8", "y-pixels = 18") + rows(PICTURE)))
+    told = images.read(text(tmp_path / "c.txt", header.replace("Start", "z-unit = nm\nStart") + rows(PICTURE)))
+    assert any("the unit counts" in note for note in told.notes)
+
+
+@pytest.mark.parametrize("values", [HEIGHTS > 0.0, np.zeros((8, 12), "m8[s]"), np.zeros((2, 8, 12))])
+def test_arrays_that_are_no_pictures_are_refused_by_their_type(tmp_path: Path, values: np.ndarray) -> None:
+    np.save(tmp_path / "a.npy", values)
+    with pytest.raises(ReadError, match=r"an array of .*; images are real numbers in two dimensions"):
+        images.read(tmp_path / "a.npy", z_unit="m", pixel_size=1e-7)

@@ -84,9 +84,9 @@ def ends_cut(text: str) -> bool:
     others = [row[-1] for row in rows[:-1] if len(row) == len(rows[-1])]
     if len(others) < _ALIKE:  # of a small matrix, whose columns are alike
         others = [word for row in rows for word in row][:-1]
-    forms = [_form(word) for word in others]
+    forms = [form for word in others if (form := _form(word)) is not None]  # nan has none
     last = _form(rows[-1][-1])
-    if last is None or len(forms) < _ALIKE or None in forms:
+    if last is None or len(forms) < _ALIKE:
         return False
     decimals, exponents = zip(*forms, strict=True)
     return len(set(decimals)) == 1 and (last[0] < decimals[0] or last[1] < min(exponents))

@@ -50,6 +50,8 @@ def facts_of(file: Path, name: str) -> Facts:
         node = opened.get(name)
         if not isinstance(node, h5py.Dataset):
             return Facts()
+        if node.dtype.kind not in "fiu":
+            raise ReadError(f"{file}: {node.name} holds {node.dtype}, expected real numbers")
         missing = [_number(node, key, file) for key in ("_FillValue", "missing_value") if key in node.attrs]
         scale, offset = (_number(node, key, file) if key in node.attrs else usual
                          for key, usual in (("scale_factor", 1.0), ("add_offset", 0.0)))  # fmt: skip

@@ -89,13 +89,13 @@ def read(file: Path, channel: str | None) -> Plane:
 @contextmanager
 def _opened(file: Path) -> Iterator[tuple[Any, text_table.Plain]]:
     with guarded(file, NAME), text_table.plain_form(file) as plain:
+        _check_array(file)
         io: ModuleType = require("SurfaceTopography.IO", "images")
         try:
             reader = io.open_topography(str(plain.file))
         except io.CannotDetectFileFormat:
             reader = None
         if reader is None or reader.format() in _CREDULOUS:
-            _refuse_array(file)
             raise ReadError(f"{file}: not an AFM image in any format that {NAME} recognises by content")
         with reader, guarded(file, f"{NAME}/{reader.format()}"):
             if reader.format() in ("asc", "xyz"):
@@ -103,8 +103,8 @@ def _opened(file: Path) -> Iterator[tuple[Any, text_table.Plain]]:
             yield reader, plain
 
 
-def _refuse_array(file: Path) -> None:
-    """Say of numpy's file what it holds."""
+def _check_array(file: Path) -> None:
+    """Refuse what numpy's file holds that is no picture of real numbers; a reader may take it for one."""
     with file.open("rb") as stream:
         if stream.read(6) != b"\x93NUMPY":
             return
@@ -112,7 +112,8 @@ def _refuse_array(file: Path) -> None:
         version = np.lib.format.read_magic(stream)
         header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
         shape, _, dtype = header(stream)
-    raise ReadError(f"{file}: an array of {dtype} of the shape {shape}; images are real numbers in two dimensions")
+    if dtype.kind not in "fiu" or len(shape) != 2:
+        raise ReadError(f"{file}: an array of {dtype} of the shape {shape}; images are real numbers in two dimensions")
 
 
 def _images_in(reader: Any, file: Path) -> tuple[list[Any], list[Channel]]:

@@ -23,7 +23,10 @@ from .checks import LENGTHS, PIXELS_PER_SIDE
 _WSXM = "WSxM file copyright"
 _AXES = re.compile(r"\s*X\s*\[(?P<x>[^\]]+)\]\s+Y\s*\[(?P<y>[^\]]+)\]\s+(?P<name>\w+)\s*\[(?P<z>[^\]]+)\]\s*")
 _AMPLITUDE = re.compile(r"\s*([XYZ]) Amplitude:\s*([-+0-9.eE]+)\s*(\S*)\s*")
-_SPIP = re.compile(r"#?\s*File Format\s*=\s*ASCII\s*")
+_HEADER = 100  # lines
+_KEYS = {key.casefold(): key for key in ("File Format", "x-pixels", "y-pixels", "x-length", "y-length", "x-unit",
+                                         "y-unit", "z-unit", "Bit2nm", "Voidpixels")}  # fmt: skip
+_SPIP = re.compile(rf"#?\s*({'|'.join(_KEYS)})\s*[=:]\s*(.*?)\s*", re.IGNORECASE)
 _EVEN = 0.02  # of a step, by which one that was rounded may differ
 
 
@@ -32,11 +35,25 @@ def translated(file: Path, lines: Sequence[str]) -> tuple[list[str], tuple[str, 
     :func:`nanotouch._io.text.plain`."""
     if lines and lines[0].startswith(_WSXM):
         return _points(file, lines) if "XYZ" in lines[1] else _matrix(lines)
-    if any(_SPIP.fullmatch(line) for line in lines[:100]):
-        void = next((m[1] for line in lines[:100] if (m := re.fullmatch(r"#?\s*Voidpixels\s*=\s*(\d+)\s*", line))), "0")
-        told = () if int(void) == 0 else (f"its header states {void} void pixels, which are not told apart",)
-        return [line if line.startswith("#") or text.is_row(line) else f"# {line}" for line in lines], told
-    return list(lines), ()
+    stated = {match[1].casefold(): match[2] for line in lines[:_HEADER] if (match := _SPIP.fullmatch(line))}
+    return _spip(lines, stated) if {"file format", "bit2nm"} & set(stated) else (list(lines), ())
+
+
+def _spip(lines: Sequence[str], stated: dict[str, str]) -> tuple[list[str], tuple[str, ...]]:
+    """With the hashes and equals signs by which it is known."""
+    header = ["# File Format = ASCII"]
+    for line in lines:
+        match = _SPIP.fullmatch(line)
+        if match is not None:
+            header.append(f"# {_KEYS[match[1].casefold()]} = {match[2]}")
+        else:
+            header.append(line if line.startswith("#") or text.is_row(line) else f"# {line}")
+    told: tuple[str, ...] = ()
+    if stated.get("voidpixels", "0") != "0":
+        told += (f"its header states {stated['voidpixels']} void pixels, which are not told apart",)
+    if "z-unit" in stated and stated.get("bit2nm", "1") not in ("1", "1.0"):
+        told += (f"its header states the unit {stated['z-unit']} and Bit2nm {stated['bit2nm']}: the unit counts",)
+    return header, told
 
 
 def _matrix(lines: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:

@@ -109,7 +109,7 @@ def _plain(file: Path) -> tuple[str | None, dict[str, tuple[float, float]], tupl
         lines = text.plain(decoded).splitlines()
     except text.NotATable as error:
         raise ReadError(f"{file}: {error}") from None
-    lines, notes = translated(file, lines)
+    lines, notes = translated(file, [_without_comment(line) for line in lines])
     rows = [number for number, line in enumerate(lines) if text.is_row(line) and len(line.split("\t")) > 1]
     if len(rows) < _NUMBERS:
         return _NOTHING
@@ -122,6 +122,12 @@ def _plain(file: Path) -> tuple[str | None, dict[str, tuple[float, float]], tupl
     _check(file, tables)
     content = "\n".join(lines) + "\n"
     return content if content.encode() != stored else None, _sizes(tables), notes
+
+
+def _without_comment(line: str) -> str:
+    """A row without the comment behind its numbers: the reader would take all of it for a line of the header."""
+    numbers = re.split(r"\s+[#%]", line, maxsplit=1)[0]
+    return numbers if text.is_row(numbers) else line
 
 
 def _sizes(tables: list[_Table]) -> dict[str, tuple[float, float]]:
@@ -195,6 +201,10 @@ def _check(file: Path, tables: list[_Table]) -> None:
         if names[-1] in names[:-1]:
             raise ReadError(f"{file}: it holds two tables under the name {names[-1]!r}")
         _check_header(file, table.header)
+        for keys, held in ((("x-pixels", "nx"), table.columns), (("y-pixels", "ny"), len(table.left))):
+            for key in keys:
+                if table.header.get(key, str(held)) != str(held):
+                    raise ReadError(f"{file}: its header states {key!r} as {table.header[key]}, its table has {held}")
         _refuse_places(file, table)
     _check_lengths(file, [table.header for table in tables if table.columns])
 
