@@ -115,6 +115,8 @@ def _read(reader: Callable[..., Any], file: Path, **given: Any) -> tuple[Any, li
                 raise
             told += (" and " if told else "") + text.removeprefix(f"{file}: ").partition(";")[0]
             options |= {name: given[name] for name in names}
+            if "sensitivity" in names and "in m/A" in text:
+                options["sensitivity"] = 1e9 * given["sensitivity"]  # m/V become m/nA
     raise AssertionError("asked three times")
 
 
