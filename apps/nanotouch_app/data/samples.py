@@ -3,7 +3,7 @@
 
 They are simulated, with noise, so that what comes out can be compared with what is known. The image shows quantum dots
 with a tilt. Curve and map are those of a tip of 20 nm on a lever of 2 N/m, over 3 GPa (effective) and 50 mJ/m2; one
-half of the map is twice as stiff.
+half of the map is twice as stiff. gel.h5 is that of a bead of 2.5 um on a gel of 1.2 kPa at 1 s and exponent 0.2.
 """
 
 from __future__ import annotations
@@ -16,13 +16,19 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import images, record
+from nanotouch.contact.geometry import Shape
+from nanotouch.curves.curve import Role
 from nanotouch.errors import require
 
 from nanotouch_app.common import output
 
-FILES = ("scan.gwy", "curve.h5", "map.h5", "scene.toml", "rig.toml", "cut.mcap", *(f"curves/{n}.h5" for n in (1, 2, 3)))
+FILES = (
+    "scan.gwy", "curve.h5", "gel.h5", "map.h5", "scene.toml", "rig.toml", "cut.mcap",
+    *(f"curves/{n}.h5" for n in (1, 2, 3)),
+)  # fmt: skip
 RADIUS, SPRING, MODULUS, WORK = 20e-9, 2.0, 3e9, 0.05  # [m], [N/m], [Pa], [J/m^2]
 SENSITIVITY = 40e-9  # [m/V]
+BEAD, SOFT, GEL_MODULUS, GEL_EXPONENT = 2.5e-6, 0.06, 1.2e3, 0.2  # [m], [N/m], [Pa] at 1 s, [-]
 ROWS, PIXEL, DEPTH = 6, 50e-9, 20e-9
 SCENE = """# a silicon tip on gold, in a rig with a lever of 8 N/m; what is not named keeps its default
 [tip]
@@ -57,6 +63,7 @@ def run(args: argparse.Namespace) -> int:
     with output.folder(args, FILES) as out, output.busy("writing"):
         images.write(out / "scan.gwy", _image(), title="Height")
         nt.curves.write(out / "curve.h5", [_curve(1)])
+        nt.curves.write(out / "gel.h5", [_gel()])
         nt.curves.write(out / "map.h5", _map())
         (out / "curves").mkdir(exist_ok=True)
         for number in (1, 2, 3):
@@ -89,6 +96,21 @@ def _curve(seed: int) -> nt.curves.ForceCurve:
     contact = nt.Contact(RADIUS, MODULUS, WORK, cohesive_range=0.2e-9)
     made = nt.curves.synthesise(contact, spring_constant=SPRING, noise=50e-12, depth=DEPTH, seed=seed)
     return replace(made, meta={**made.meta, "sensitivity": SENSITIVITY})
+
+
+def _gel() -> nt.curves.ForceCurve:
+    """Down by 2 um in a second, half a second at rest, and back."""
+    time = np.arange(2500, dtype=np.float64) / 1000.0
+    base = np.interp(time, [0.0, 1.0, 1.5, 2.5], [-1e-6, 1e-6, 1e-6, -1e-6])
+    gel = nt.Rheology.power_law(GEL_MODULUS, GEL_EXPONENT)
+    force = gel.force(time, base, Shape("paraboloid", radius=BEAD), spring_constant=SOFT).force
+    force = force + 10e-12 * np.random.default_rng(7).standard_normal(time.size)
+    parts: tuple[tuple[Role, int, int], ...] = (("approach", 0, 1000), ("pause", 1000, 1500), ("retract", 1500, 2500))
+    segments = tuple(
+        nt.curves.Segment(role, time[a:b], -base[a:b], "height (measured)", force[a:b], force[a:b] / SOFT)
+        for role, a, b in parts
+    )
+    return nt.curves.ForceCurve(segments, {"spring constant": SOFT, "sensitivity": SENSITIVITY}, "gel")
 
 
 def _map() -> list[nt.curves.ForceCurve]:
