@@ -78,7 +78,7 @@ static void test_drag_depends_on_the_height(void **state)
     make(&options.contact, 0.0);
     options.drag_height = 5e-7;
     for (int i = 0; i < POINTS; i++) {
-        const double speed = i < BRANCH ? 2e-6 : -2e-6, height = fmax(-positions[i], 0.0);
+        const double speed = i < BRANCH ? 2e-6 : -2e-6, height = positions[i] < 0.0 ? -positions[i] : 0.0;
         forces[i] += 4e-6 * speed / (1.0 + height / 5e-7);
     }
     for (int i = 0; i < POINTS; i++) /* without what make() put in */
