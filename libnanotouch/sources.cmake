@@ -258,6 +258,7 @@ set(nanotouch_sources_host
     host/changes.c
     host/compose.c
     host/energy.c
+    host/event.c
     host/hand.c
     host/host.c
     host/law.c

@@ -122,6 +122,7 @@ const char *page_host_wants(void);
 const char *page_host_reopens(void);
 double page_host_reopens_to(void);
 void page_host_state(double found[6]);
+const char *page_host_facts(void);
 const char *page_host_task(void);
 int page_host_solve(void);
 

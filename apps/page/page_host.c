@@ -127,6 +127,14 @@ PAGE_API(page_host_state) void page_host_state(double found[6])
     memcpy(found + 2, state.energies, sizeof state.energies);
 }
 
+/* What touches, and what is promised, in a line. */
+PAGE_API(page_host_facts) const char *page_host_facts(void)
+{
+    static char line[NT_HOST_LINE];
+    const nt_host_state state = nt_host_state_of(host);
+    return state.frame ? nt_host_facts(state.frame, &state.bounds, line, sizeof line) : "";
+}
+
 PAGE_API(page_host_task) const char *page_host_task(void)
 {
     return nt_host_state_of(host).task;

@@ -87,6 +87,17 @@ static nt_proxy hand_of(nt_session_host *host)
     return nt_proxy_begin(&facts);
 }
 
+static nt_host_bounds bounds_of(const nt_session *session)
+{
+    const nt_session_setup *setup = nt_session_setup_of(session);
+    const nt_plan *plan = nt_session_plan(session);
+    nt_margins margins;
+    const nt_verdict verdict =
+        nt_margins_judge(&setup->rig, &setup->settings, plan->maximum_stiffness, setup->mode, &margins);
+    return (nt_host_bounds){plan->bound.force_error, verdict.margin, nt_session_guarantee(session).force,
+                            nt_session_motor_bound(session).force};
+}
+
 nt_status nt_host_learn(nt_session_host *host)
 {
     const nt_session_setup *setup = nt_session_setup_of(host->session);
@@ -103,6 +114,7 @@ nt_status nt_host_learn(nt_session_host *host)
     const nt_proxy *now = &host->hand;
     if (before.stiffness != now->stiffness || before.zero != now->zero || before.facts.load != now->facts.load)
         nt_energy_begin(host);
+    host->bounds = bounds_of(host->session);
     host->due |= NT_DUE_WORLD;
     return status;
 }
@@ -112,6 +124,7 @@ nt_status nt_host_open(nt_session_host *host, nt_session *session)
     host->session = session;
     host->has_frame = 0;
     host->hand = (nt_proxy){0};
+    host->event = (nt_host_event){.told = -INFINITY};
     nt_left_forget(host);
     const nt_status status = nt_host_learn(host);
     if (!host->is_laid)
@@ -159,6 +172,7 @@ void nt_host_see(nt_session_host *host, const nt_frame *frames, long count)
         host->frame = frames[i];
         host->has_frame = 1;
         nt_energy_see(host, &frames[i]);
+        nt_event_see(host, &frames[i]);
         nt_left_see(host, &frames[i]);
         nt_trainer_see(host, &frames[i]);
     }
@@ -179,10 +193,12 @@ nt_host_state nt_host_state_of(const nt_session_host *host)
 {
     const nt_trainer *trainer = &host->trainer;
     nt_host_state state = {.hand = &host->hand,
+                           .frame = host->has_frame ? &host->frame : NULL,
                            .acts = host->has_frame && nt_proxy_acts(&host->hand, &host->frame),
                            .undo = nt_host_undoable(host),
                            .task = trainer->task ? trainer->task->about.name : "",
-                           .is_done = trainer->is_done};
+                           .is_done = trainer->is_done,
+                           .bounds = host->bounds};
     nt_energies(host, state.energies);
     return state;
 }

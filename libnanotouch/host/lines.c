@@ -26,3 +26,33 @@ void nt_line_felt(const nt_session_host *host, nt_text *text)
                  figures);
     nt_text_fill(text, "{depth} deep and {stiffness} stiff under {load}", figures);
 }
+
+static void add_touch(nt_text *text, const nt_frame *frame)
+{
+    const nt_figure figures[] = {
+        {"radius", frame->contact_radius, "m", 0}, {"gap", frame->gap, "m", 0}, {"depth", -frame->gap, "m", 0}, {0}};
+    nt_text_fill(text,
+                 !isfinite(frame->gap)         ? "the gap is not known: a real slave"
+                 : frame->contact_radius > 0.0 ? "contact of {radius} radius"
+                 : frame->gap > 0.0            ? "gap {gap}"
+                                               : "pressed in by {depth}",
+                 figures);
+}
+
+const char *nt_host_facts(const nt_frame *frame, const nt_host_bounds *bounds, char *line, size_t size)
+{
+    nt_text text = nt_text_in(line, size);
+    add_touch(&text, frame);
+    nt_text_add(&text, isfinite(bounds->bound) ? "  ·  within " : "  ·  no bound");
+    if (isfinite(bounds->bound)) {
+        nt_text_general(&text, fmax(100.0 * bounds->bound, 0.01), 2);
+        nt_text_add(&text, " %");
+    }
+    nt_text_fill(&text,
+                 isfinite(bounds->margin) ? " (plan)  ·  margin {margin}  ·  never above {force}"
+                                          : " (plan)  ·  no loop closes through this hand  ·  never above {force}",
+                 (const nt_figure[]){{"margin", bounds->margin, "#", 0}, {"force", bounds->force, "N", 0}, {0}});
+    if (bounds->hand > 0.0)
+        nt_text_fill(&text, ", {hand} at the hand", (const nt_figure[]){{"hand", bounds->hand, "N", 0}, {0}});
+    return line;
+}

@@ -95,7 +95,6 @@ static void tell_world(nt_session_host *host, nt_text *json)
     const nt_plan *plan = nt_session_plan(host->session);
     char words[NT_HOST_LINE];
     nt_text felt = nt_text_in(words, sizeof words);
-    nt_margins margins;
     nt_line_felt(host, &felt);
     nt_json_number(json, "version", NT_HOST_VERSION);
     nt_json_text(json, "preset", host->name);
@@ -110,11 +109,9 @@ static void tell_world(nt_session_host *host, nt_text *json)
     add_shown(json, host);
     nt_json_number(json, "stiffness", host->hand.stiffness);
     nt_json_number(json, "zero", host->hand.zero);
-    nt_json_number(
-        json, "margin",
-        nt_margins_judge(&setup->rig, &setup->settings, plan->maximum_stiffness, setup->mode, &margins).margin);
-    nt_json_number(json, "force", nt_session_guarantee(host->session).force);
-    nt_json_number(json, "hand", nt_session_motor_bound(host->session).force);
+    nt_json_number(json, "margin", host->bounds.margin);
+    nt_json_number(json, "force", host->bounds.force);
+    nt_json_number(json, "hand", host->bounds.hand);
     nt_json_number(json, "pull_off", host->plan.pull_off_force);
     nt_json_number(json, "undo", nt_host_undoable(host));
     nt_json_number(json, "redo", host->undone_count);
@@ -187,8 +184,8 @@ static const struct {
     void (*tell)(nt_session_host *host, nt_text *json);
 } messages[] = {{NT_DUE_SLIDERS, "sliders", tell_sliders}, {NT_DUE_WORLD, "world", tell_world},
                 {NT_DUE_DENTS, "dents", tell_dents},       {NT_DUE_PARTICLES, "particles", nt_trainer_tell_particles},
-                {NT_DUE_TASK, "task", nt_trainer_tell},    {NT_DUE_NOTE, "note", tell_note},
-                {NT_DUE_REFUSED, "refused", tell_refused}};
+                {NT_DUE_EVENT, "event", nt_event_tell},    {NT_DUE_TASK, "task", nt_trainer_tell},
+                {NT_DUE_NOTE, "note", tell_note},          {NT_DUE_REFUSED, "refused", tell_refused}};
 
 long nt_host_tell(nt_session_host *host, char *text, size_t size)
 {

@@ -18,7 +18,8 @@ enum {
     NT_DUE_WORLD = 8,
     NT_DUE_DENTS = 16,
     NT_DUE_PARTICLES = 32,
-    NT_DUE_TASK = 64
+    NT_DUE_TASK = 64,
+    NT_DUE_EVENT = 128
 };
 
 /* A particle that was pushed: where it lay before. */
@@ -40,6 +41,15 @@ typedef struct nt_host_left {
     nt_host_move moves[NT_HOST_MOVES];
     int move_count;
 } nt_host_left;
+
+/* What has happened to the contact lately. */
+typedef struct nt_host_event {
+    int touches, waits; /* 1: a snap is told once it is known how hard it pulled */
+    double since, told; /* [s] */
+    double pull;        /* the deepest of this contact [N] */
+    double force;       /* of the event that is told next [N] */
+    const char *kind;
+} nt_host_event;
 
 /* Sums of the last touch. */
 typedef struct nt_host_energy {
@@ -75,6 +85,8 @@ struct nt_session_host {
     int slider_count;
     nt_host_left left;
     nt_host_energy energy;
+    nt_host_bounds bounds;
+    nt_host_event event;
     nt_trainer trainer;
 };
 
@@ -110,6 +122,10 @@ void nt_left_look(nt_session_host *host); /* at particles */
 nt_status nt_left_undo(nt_session_host *host);
 nt_status nt_left_lay(nt_session_host *host, const double (*poses)[3], int count);
 
+/* event.c: what snaps and tears */
+void nt_event_see(nt_session_host *host, const nt_frame *frame);
+void nt_event_tell(nt_session_host *host, nt_text *json);
+
 /* energy.c: where the work of the hand goes in the last touch */
 void nt_energy_begin(nt_session_host *host);
 void nt_energy_let_go(nt_session_host *host);
@@ -125,6 +141,5 @@ double nt_law_jump_gap(const nt_plan *plan, double spring); /* 0: none [m] */
 
 /* lines.c: state in words */
 void nt_line_felt(const nt_session_host *host, nt_text *text);
-void nt_line_facts(const nt_session_host *host, nt_text *text);
 
 #endif

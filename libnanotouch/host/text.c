@@ -83,7 +83,7 @@ static void add_figure(nt_text *text, const nt_figure *figure)
     else if (how[0] == '%')
         nt_text_fixed(text, 100.0 * figure->value, how[1] == '.');
     else if (how[0] == '#')
-        nt_text_general(text, figure->value, 3);
+        nt_text_general(text, figure->value, how[1] == '2' ? 2 : 3);
     else if (how[0] == '2')
         nt_text_digits(text, figure->value, how + 2, 2);
     else

@@ -10,7 +10,7 @@ typedef struct nt_text {
     size_t size, length; /* always ended by 0; what does not fit is cut */
 } nt_text;
 /* A figure for the {key} of a pattern. how: a unit, for three digits with it; "2 m": two of them; "%": a fraction in
- * whole percent, "%.1" with a decimal; "#": a plain number; NULL: the text. */
+ * whole percent, "%.1" with a decimal; "#": a plain number, "#2" of two digits; NULL: the text. */
 typedef struct nt_figure {
     const char *key;
     double value;

@@ -77,7 +77,7 @@ class ContactPanel:
 
     @staticmethod
     def _between(painter: Painter, palette: Palette, view: _View, section: Section, seen: Seen) -> None:
-        """What is between the bodies: water films and neck, the zone that pulls, fur or ions."""
+        """What is between the bodies: water films and neck, the zone that pulls, brush or ions."""
         a, c = section.contact_radius, section.cohesive_radius
         brush = float(seen.world["scene"]["medium"]["brush_thickness"])
         if brush > 0.0:
@@ -122,11 +122,11 @@ class ContactPanel:
 
 def _state(section: Section, seen: Seen) -> str:
     if section.contact_radius > 0.0:
-        fur = float(seen.world["scene"]["medium"]["brush_thickness"]) > 0.0
-        return "pressed, the fur between" if fur else "touching"
+        brush = float(seen.world["scene"]["medium"]["brush_thickness"]) > 0.0
+        return "pressed, the brush between" if brush else "touching"
     if section.attached:
         return "held by its neck" if seen.meniscus else "held"
-    return f"apart by {digits(float(seen.frame['gap']), 'm')}"
+    return f"gap {digits(float(seen.frame['gap']), 'm')}"
 
 
 class _View:

@@ -216,9 +216,14 @@ class Host:
         return {
             "tell": "clock", "speed": self.speed, "paused": self.paused, "slowdown": self.session.progress.slowdown,
             "recorded": self.writer is not None, "height": state["height"], "undo": state["undo"],
-            "energies": state["energies"], "missed": self.frames.missed,
+            "energies": state["energies"], "missed": self.frames.missed, "facts": self._facts(),
             "here": places.here(self.session.surface, self.observer.newest()),
         }  # fmt: skip
+
+    def _facts(self) -> str:
+        frame, world = self.observer.newest(), self.about
+        bounds = [float(world[key]) for key in ("bound", "margin", "force", "hand")]
+        return "" if frame is None else c_host.facts(frame, *bounds)
 
     def properties(self) -> dict[str, Any]:
         """Of each place, for the picture; empty where the scene alone says them."""

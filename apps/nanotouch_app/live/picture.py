@@ -205,6 +205,7 @@ class Picture:
             self._proxy(painter)
             self._scales(painter)
         readings.bars(painter, self.palette, self.layout.bars, self.seen)
+        readings.event(painter, self.palette, self.layout.view, self.seen)
         if self.board:
             typed = self.entry.shown if self.entry is not None and self.entry.slider is None else ""
             board.draw(painter, self.palette, self.board, self.corner, typed)

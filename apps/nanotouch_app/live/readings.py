@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import time
 
+from nanotouch.touch import host
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.supervisor import REASONS
 
@@ -162,21 +163,9 @@ def known(value: float | None) -> float:
 
 
 def _facts(seen: Seen) -> str:
-    radius = float(seen.reading["contact_radius"])
-    gap = float(seen.reading["gap"])
-    if seen.is_blind:
-        touch = "the gap is not known: a real slave"
-    elif radius > 0.0:
-        touch = f"contact of {digits(radius, 'm')} radius"
-    else:
-        touch = f"apart by {digits(gap, 'm')}" if gap > 0.0 else f"pressed in by {digits(-gap, 'm')}"
-    bound = 100.0 * known(seen.world["bound"])
-    within = f"within {max(bound, 0.01):.2g} % (plan)" if math.isfinite(bound) else "no bound (plan)"
-    margin = known(seen.world["margin"])
-    told = "no loop closes through this hand" if not math.isfinite(margin) else f"margin {margin:.3g}"
-    most, hand = float(seen.world["force"]), float(seen.world.get("hand", 0.0))
-    pushed = f", {digits(hand, 'N')} at the hand" if hand > 0.0 else ""
-    return f"{touch}  ·  {within}  ·  {told}  ·  never above {digits(most, 'N')}{pushed}"
+    world = seen.world
+    bounds = (known(world["bound"]), known(world["margin"]), float(world["force"]), float(world.get("hand", 0.0)))
+    return host.facts(seen.reading, *bounds)
 
 
 def _stopped(state: int, bits: int) -> str:
@@ -195,3 +184,16 @@ def help_panel(painter: Painter, palette: Palette, frame: Frame) -> None:
         level = y + height - 62 - pitch * number
         painter.text(x + 24, level, key, palette.accent)
         painter.text(x + 210, level, does, palette.ink)
+
+
+SHOWN, LARGE = 2.5, 34  # an event is shown so long [s]; its letters [pixels]
+
+
+def event(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
+    """What has just snapped or torn, as one large number over the scene."""
+    at, words = seen.event
+    age = time.monotonic() - at
+    if not words or age > SHOWN:
+        return
+    x, y, width, height = frame
+    painter.text(x + 0.5 * width, y + 0.78 * height, words, palette.accent, LARGE, "centre", bold=True)

@@ -69,6 +69,7 @@ class Seen:
         self.peak = 0.0
         self.snaps: deque[tuple[float, str]] = deque(maxlen=8)
         self.missed = 0
+        self.event = (0.0, "")  # when, and how hard
 
     def hear(self, message: dict[str, Any]) -> None:
         """Take what the host tells."""
@@ -88,6 +89,8 @@ class Seen:
                 self.dented.dents = tuple(Dent.from_numbers(numbers) for numbers in message["dents"])
             case "particles":
                 self.snaps += [(self.arrived, event) for event in message["events"]]
+            case "event":
+                self.event = (time.monotonic(), str(message["text"]))
             case "task":
                 self.task = message if message["name"] else {}
             case "refused":

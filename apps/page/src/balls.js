@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Particles that a task lays, and rings where they shall lie, as nanotouch_app/live/balls.py draws them.
 
-import { ball, ring } from "./shapes.js";
+import { ring, rod } from "./shapes.js";
 
 const unit = (colour) => colour.map((part) => part / 255);
 
@@ -12,14 +12,16 @@ export class DrawnBalls {
   get actors() { return [...this.balls, ...this.rings]; }
 
   // In lengths of the map.
-  show({ radius, places, targets }, map) {
-    if (this.balls.length !== places.length || this.rings.length !== targets.length) this.#renew(radius / map.unit, places, targets);
+  show({ radius, places, targets, length = 0, angles = [] }, map) {
+    if (this.balls.length !== places.length || this.rings.length !== targets.length)
+      this.#renew(radius / map.unit, length / map.unit, places, targets);
     const ground = -map.low * map.scale;
     places.forEach(([x, y, z], i) => this.balls[i].setPosition(x / map.unit, y / map.unit, ground + z / map.unit));
+    angles.forEach((angle, i) => this.balls[i]?.setOrientation(0, 0, (180 * angle) / Math.PI));
     targets.forEach(([x, y], i) => this.rings[i].setPosition(x / map.unit, y / map.unit, ground + 0.004));
   }
 
-  #renew(radius, places, targets) {
+  #renew(radius, length, places, targets) {
     this.forget();
     const made = (mesh, colour) => {
       const actor = this.make(mesh);
@@ -27,7 +29,7 @@ export class DrawnBalls {
       return actor;
     };
     const { PARTICLE, RING, THICK } = this.constants;
-    this.balls = places.map(() => made(ball(radius), PARTICLE));
+    this.balls = places.map(() => made(rod(radius, length), PARTICLE));
     this.rings = targets.map(() => made(ring((1 - THICK) * radius, radius), RING));
     for (const actor of this.balls) actor.getProperty().setSpecular(0.3);
     for (const actor of this.rings) actor.getProperty().setLighting(false);

@@ -68,7 +68,7 @@ export class ContactPanel {
     painter.line(rigid, palette.panel, 1, true);
   }
 
-  // What is between the bodies: neck of water, the zone that pulls, fur.
+  // What is between the bodies: neck of water, the zone that pulls, brush.
   #between(seen, palette, { scale, middle, y }) {
     const { a, c, r, rows } = this.section, { painter } = this, brush = seen.world.scene.medium.brush_thickness;
     const zone = r.map((at, i) => [at, rows[3 * i + 1], rows[3 * i]]);
@@ -103,7 +103,7 @@ export class ContactPanel {
     const kind = lambda < 0.1 ? "like DMT" : lambda > 5 ? "like JKR" : "between DMT and JKR";
     const law = none ? "no adhesion: like Hertz" : `${kind}, lambda ${digits(lambda, "", 2)}`;
     painter.text(12, painter.height - 12, seen.dented ? inDent(seen.dented) : law, palette.ink);
-    const state = section.a > 0 ? (seen.world.scene.medium.brush_thickness > 0 ? "pressed, the fur between" : "touching") : section.attached ? "held" : `apart by ${digits(section.gap, "m")}`;
+    const state = section.a > 0 ? (seen.world.scene.medium.brush_thickness > 0 ? "pressed, the brush between" : "touching") : section.attached ? "held" : `gap ${digits(section.gap, "m")}`;
     painter.text(painter.width - 14, painter.height - 12, state, palette.ink, { align: "right" });
   }
 }

@@ -156,7 +156,8 @@ export class Host {
       core.c.page_host_state(at);
       return [...core.doubles(at, 6)];
     });
-    return { tell: "clock", speed: this.speed, paused: this.paused, slowdown: this.slowdown, recorded: false, undo, height, here, energies };
+    return { tell: "clock", speed: this.speed, paused: this.paused, slowdown: this.slowdown, recorded: false, undo, height, here, energies,
+      facts: core.text(core.c.page_host_facts()) };
   }
 
   // --- what is asked ---

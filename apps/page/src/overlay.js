@@ -4,6 +4,7 @@
 import { digits, stepUp } from "./units.js";
 
 const BAND = 0.15, RING = 13; // of the picture's height: the band under the largest planned force; [pixels]
+const SHOWN = 2.5; // an event [s]
 const NARROW = 480; // a phone's [pixels]
 const squeezed = (share) => Math.sign(share) * Math.sqrt(Math.min(Math.abs(share), 1));
 
@@ -20,6 +21,15 @@ export class Overlay {
     this.#proxy(seen, stage, palette);
     this.#scales(stage, palette);
     this.#bars(seen, palette);
+    this.#event(seen, palette);
+  }
+
+  // What has just snapped or torn: one large number.
+  #event({ event }, palette) {
+    const { painter } = this;
+    if (!event || performance.now() - event.at > 1000 * SHOWN) return;
+    const size = painter.width < NARROW ? 20 : 34;
+    painter.text(0.5 * painter.width, 0.22 * painter.height, event.text, palette.accent, { align: "center", bold: true, size });
   }
 
   #proxy(seen, stage, palette) {

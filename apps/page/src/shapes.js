@@ -162,6 +162,13 @@ export function ball(radius, rows = 33, around = 49) {
   return { points: normals.map((part) => radius * part), normals, cells: quads(rows, around) };
 }
 
+// Along x with round ends; of no length a ball.
+export function rod(radius, length) {
+  const made = ball(radius);
+  for (let at = 0; at < made.points.length; at += 3) made.points[at] += 0.5 * Math.sign(made.points[at]) * length;
+  return made;
+}
+
 // A flat ring around 0.
 export function ring(inner, outer, around = 65) {
   const points = new Float32Array(6 * around), normals = new Float32Array(6 * around);

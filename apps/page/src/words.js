@@ -38,18 +38,7 @@ export class Words {
     byId("state").textContent = this.table.states[state];
     byId("dot").style.background = `var(--${STATES[state]})`;
     byId("facts").textContent = seen.stale ? `no frame for ${seen.age.toFixed(1)} s: nothing is felt`
-      : state ? `${names.join(", ") || "stopped"}. Enter: go on` : this.#facts(seen);
-  }
-
-  #facts({ reading, world, law, load }) {
-    const { contact, gap } = reading;
-    const touch = contact > 0 ? `contact of ${digits(contact, "m")} radius`
-      : gap > 0 ? `apart by ${digits(gap, "m")}` : `pressed in by ${digits(-gap, "m")}`;
-    const margin = Number.isFinite(world.margin) ? `margin ${Number(world.margin.toPrecision(3))}` : "no loop closes through this hand";
-    const pull = law && law.facts.pull_off_force > 1e-3 * load ? ` · pull-off ${digits(law.facts.pull_off_force, "N")}` : "";
-    const within = Number.isFinite(world.bound) ? `within ${Number(Math.max(100 * world.bound, 0.01).toPrecision(2))} %` : "no bound";
-    return `${touch} · ${within} (plan) · ${margin} · ` +
-      `never above ${digits(world.force, "N")}${pull}`;
+      : state ? `${names.join(", ") || "stopped"}. Enter: go on` : clock.facts ?? "";
   }
 
   #notes(seen) {

@@ -94,6 +94,11 @@ static void bind_sliders(py::module_ &module)
         .def_readonly("low", &nt_host_slider::low)
         .def_readonly("high", &nt_host_slider::high);
     module.def("host_sliders", &sliders);
+    module.def("host_facts", [](const Frames1 &frame, double bound, double margin, double force, double hand) {
+        const nt_host_bounds bounds = {bound, margin, force, hand};
+        char text[NT_HOST_LINE];
+        return std::string(nt_host_facts(frame.data(), &bounds, text, sizeof text));
+    });
     module.def("host_digits", [](double value, const std::string &unit, int count) {
         char text[NT_HOST_LINE];
         return std::string(nt_host_digits(value, unit.c_str(), count, text, sizeof text));

@@ -58,6 +58,15 @@ NT_API double nt_host_slider_at(const nt_host_slider *slider, double place);
 NT_API double nt_host_slider_place(const nt_host_slider *slider, double value);
 /* A number of so many digits with its unit under a prefix, "-" where it is not known. Returns text. */
 NT_API const char *nt_host_digits(double value, const char *unit, int count, char *text, size_t size);
+/* What holds of a session, for a line about its state. */
+typedef struct nt_host_bounds {
+    double bound;  /* of the plan [-] */
+    double margin; /* infinite: no loop closes [-] */
+    double force;  /* on the sample, never above [N] */
+    double hand;   /* at the hand, never above; 0: nothing pushes it [N] */
+} nt_host_bounds;
+/* What touches, how accurate that is, how far from the limit, what is promised: in a line. Returns text. */
+NT_API const char *nt_host_facts(const nt_frame *frame, const nt_host_bounds *bounds, char *text, size_t size);
 /* A value in words, with its unit, as it is shown: "40 %", "8.00 N/m". Returns text. */
 NT_API const char *nt_host_quantity(const nt_field *field, double value, char *text, size_t size);
 
@@ -184,10 +193,12 @@ NT_API void nt_host_refuse(nt_session_host *host, const char *why);
 /* What a caller looks at between messages. */
 typedef struct nt_host_state {
     const nt_proxy *hand;
-    int acts;           /* 1: the hand moves by itself now */
-    int undo;           /* what can be taken back: so many changes, or else dents, or else pushes */
-    const char *task;   /* that runs; "": none */
-    int is_done;        /* 1: and has ended */
+    const nt_frame *frame; /* the newest; NULL: none was seen yet */
+    int acts;              /* 1: the hand moves by itself now */
+    int undo;              /* what can be taken back: so many changes, or else dents, or else pushes */
+    const char *task;      /* that runs; "": none */
+    int is_done;           /* 1: and has ended */
+    nt_host_bounds bounds;
     double energies[4]; /* of the last touch: work of the hand = what the spring has stored + what the law
                            has taken + heat [J] */
 } nt_host_state;

@@ -7,6 +7,7 @@ from __future__ import annotations
 from nanotouch._core import HostSlider as Slider
 from nanotouch._core import LiveHost, Proxy
 from nanotouch._core import host_digits as digits
+from nanotouch._core import host_facts as facts
 from nanotouch._core import host_presets as presets
 from nanotouch._core import host_slider_fields as slider_fields
 from nanotouch._core import host_sliders as sliders
@@ -14,4 +15,6 @@ from nanotouch._core import host_tasks as tasks
 from nanotouch._core import proxy_glide as GLIDE
 from nanotouch._core import proxy_load as LOAD
 
-__all__ = ["GLIDE", "LOAD", "LiveHost", "Proxy", "Slider", "digits", "presets", "slider_fields", "sliders", "tasks"]
+__all__ = [
+    "GLIDE", "LOAD", "LiveHost", "Proxy", "Slider", "digits", "facts", "presets", "slider_fields", "sliders", "tasks",
+]  # fmt: skip
