@@ -248,6 +248,20 @@ def test_an_elastic_curve_is_not_said_to_relax() -> None:
         assert (found.status, found.reason) == ("ok", "")
 
 
+# A retraction displaced by 5 % of its travel in the middle, or weaker by 10 %.
+@pytest.mark.parametrize("modulus", [1e3, 1e5])
+def test_hysteresis_and_friction_are_no_relaxation(modulus: float) -> None:
+    curve = curve_of(Sample(modulus, 0.0, depth=1e-6 if modulus < 1e4 else 5e-8), noise=1e-11, seed=1)
+    approach, back = curve.segments
+    assert back.force is not None
+    part = (back.z - back.z.min()) / np.ptp(back.z)
+    bowed = replace(back, z=back.z - 0.05 * np.ptp(back.z) * part * (1 - part))
+    rubbed = replace(back, force=0.9 * back.force, deflection=None)
+    for other in (bowed, rubbed):
+        found = fit.fit_curve(replace(curve, segments=(approach, other)), "hertz", radius=RADIUS)
+        assert "relaxes" not in found.reason
+
+
 def test_another_tip_is_no_relaxation() -> None:
     cone = Sample(1e3, 0.0, power=2.0, scale=2 / np.pi * np.tan(0.6)).with_peak(2e-8)
     found = fit.fit_curve(curve_of(cone, noise=5e-12), "hertz", radius=RADIUS, uncertainties=EXACT)

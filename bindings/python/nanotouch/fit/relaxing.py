@@ -67,14 +67,15 @@ def relaxing(curve: ForceCurve, report: CurveReport, setup: Setup) -> AboutTime 
     for approach_only in (False, True):
         exponent = _exponent(curve, report, law, approach_only)
         if exponent is not None:
-            of = "the approach" if approach_only else "that with the pauses" if adheres else "the whole curve"
+            of = "the approach" if approach_only else "the approach with its pauses" if adheres else "the whole curve"
+            verb = "relaxes or yields" if approach_only else "relaxes"  # the retraction follows from no power law
             beta = f"beta = {with_sigma(*exponent, '')}"
             return AboutTime(
                 True,
-                f"the sample relaxes: the retraction gives back {100 * (1 - loop):.0f} % of the work, and {of} asks "
+                f"the sample {verb}: the retraction gives back {100 * (1 - loop):.0f} % of the work, and {of} asks "
                 f"for a modulus that falls with time as t^-beta, {beta}; what an elastic law finds is that of "
                 f"this speed and no property of the sample: fit {name}",
-                f"the sample relaxes, {beta}: fit {name}",
+                f"the sample {verb}, {beta}: fit {name}",
             )
     return None
 
