@@ -28,12 +28,12 @@ PATIENCE = 60.0  # of a loaded machine [s]
 class Led:
     """A session that is advanced by hand, and a hand that leads it through the queue."""
 
-    def __init__(self, session: nt.Session, name: str) -> None:
+    def __init__(self, session: nt.Session, name: str, sideways: bool = False) -> None:
         self.session = session
         session.publish(name)
         session.advance(0.01)
         self.observer = nt.frames.attach(name)
-        self.remote = Remote(name, self.observer, leads=True)
+        self.remote = Remote(name, self.observer, leads=True, sideways=sideways)
         self.told: list[dict[str, Any]] = []
         self.turn()
 
@@ -90,6 +90,28 @@ def test_a_hand_presses_through_the_queue_and_goes_no_further_than_the_limit(led
     led.settle(0.3)
     assert led.frame["gap"] > 10e-9
     assert not [one for one in led.told if one["tell"] == "refused"]
+
+
+def test_beside_a_device_that_leads_z_the_mouse_leads_x_and_y() -> None:
+    """Paper, section V: the device's place is left alone, however far the tip is led (its travel is no limit)."""
+    surface = nt.Surface.touched_by(nt.Scene(), nt.surface.flat(size=4e-6, pixels=64))
+    session = nt.Session(rig=nt.Rig(), surface=surface, path=[(2e-6, 2e-6)], seed=1, recorded=False)
+    led = Led(session, f"sideways-{os.getpid()}", sideways=True)
+    assert "its device leads z" in led.remote.world["source"]
+    session.advance(0.2, nt.operator.Hold(session.core.master_start + 2e-3, 2e-6, 2e-6, 0.1))
+    before = led.frame.copy()
+    for _ in range(3):
+        led.ask("move", way=(0.4e-6, -0.2e-6, 0.1e-6))
+    for what in ("wheel", "press", "retract"):
+        with pytest.raises(Error, match="the device leads the height"):
+            led.remote.ask({"do": what, "steps": 1.0, "on": True}, led.frame)
+    led.settle(0.2)
+    way = led.frame["tip_position"] - before["tip_position"]
+    assert way[:2] == pytest.approx([1.2e-6, -0.6e-6], abs=2e-9)
+    assert led.frame["master_position"][2] == pytest.approx(before["master_position"][2], abs=1e-9)
+    assert session.state == "RUN"
+    assert not [one for one in led.told if one["tell"] == "refused"]
+    led.close()
 
 
 def test_the_hand_begins_where_the_program_has_left_it(led: Led) -> None:

@@ -86,7 +86,7 @@ class Host:
         return nt.Session(
             scene, rig, surface=surface, settings=nt.Settings.from_core(settings), mode="scan",
             path=[(0.5 * width, 0.5 * height), (0.6 * width, 0.5 * height)], clearance=start,
-            recorded=self.out is not None or scene.sample.dents == "yes", relative_accuracy=subject.accuracy,
+            recorded=self.out is not None or self._keeps(scene), relative_accuracy=subject.accuracy,
             **{name: of(scene) for name, of in pushed.items() if of is not None},  # type: ignore[arg-type]
         )  # fmt: skip
 
@@ -129,10 +129,14 @@ class Host:
             if self.writer is not None:
                 self.writer.append(block)
 
+    def _keeps(self, scene: nt.Scene) -> bool:
+        """Whether what the tip leaves is known from the session's events alone."""
+        return bool(scene.sample.dents == "yes")
+
     @property
     def keeps_dents(self) -> bool:
         """Whether the sample does."""
-        return bool(self.session.scene.sample.dents == "yes")
+        return self._keeps(self.session.scene)
 
     @property
     def dents(self) -> tuple[Dent, ...]:

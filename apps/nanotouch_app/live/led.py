@@ -18,14 +18,17 @@ Post = Callable[[int, int, tuple[float, float, float, float]], Any]
 
 
 class Hand:
-    """Begins where master and tip are."""
+    """Begins where master and tip are; ``sideways``: a device leads z, and only the tip's path is asked for."""
 
-    def __init__(self, about: Mapping[str, Any], frame: Any, post: Post) -> None:
+    def __init__(self, about: Mapping[str, Any], frame: Any, post: Post, sideways: bool = False) -> None:
         scene, rig, settings = nt.Scene(**about["scene"]), nt.Rig(**about["rig"]), nt.Settings(**about["settings"])
-        self.post, self.scale = post, float(settings.gains.alpha_p)
+        self.post, self.scale, self.sideways = post, float(settings.gains.alpha_p), sideways
         self.start = tuple(map(float, about["start"]))
         self.axes, self.stage_axes = int(rig.master.axes), int(rig.stage.axes)
-        self.proxy = host.Proxy(_facts(scene, rig, settings, about, frame))
+        facts = _facts(scene, rig, settings, about, frame)
+        if sideways:  # no travel of a master limits the path
+            facts["travel"] = 2.0 * max(facts["width"], facts["height"]) / self.scale or facts["travel"]
+        self.proxy = host.Proxy(facts)
         x, y = (np.asarray(frame["tip_position"][:2]) - self.start) / self.scale
         if self.axes == 3:
             x, y = frame["master_position"][:2]
@@ -40,7 +43,8 @@ class Hand:
     def answer(self, message: Mapping[str, Any], frame: Any) -> None:
         """Move, wheel, press or retract."""
         if message["do"] == "move":
-            self.proxy.move(tuple(map(float, message["way"])), frame)
+            x, y, down = map(float, message["way"])
+            self.proxy.move((x, y, 0.0 if self.sideways else down), frame)
         elif message["do"] == "wheel":
             self.proxy.wheel(float(message["steps"]), frame)
         elif message.get("on", False):
@@ -63,7 +67,8 @@ class Hand:
         if self.axes == 3:
             self.post(AIM, HAND, (x, y, z, host.GLIDE))
             return
-        self.post(AIM, HAND, (0.0, 0.0, z, host.GLIDE))
+        if not self.sideways:
+            self.post(AIM, HAND, (0.0, 0.0, z, host.GLIDE))
         if self.stage_axes == 3:
             left, low = self.start[0] + self.scale * x, self.start[1] + self.scale * y
             self.post(AIM, PATH, (left, low, host.GLIDE, 0.0))

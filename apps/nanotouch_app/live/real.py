@@ -37,10 +37,12 @@ def touch(args: argparse.Namespace) -> int:
     file = rig_file.read(path, allow_code=args.allow_code)
     display.check()
     session, leads = opened(file, path.parent)
-    window = session.live(hand=leads)
+    sideways = not leads and session.rig.master.axes == 1.0 and session.rig.stage.axes == 3.0
+    window = session.live(hand="sideways" if sideways else leads)
     try:
         session.start()
-        hand = "your mouse leads the hand" if leads else "its device leads the hand, the window watches"
+        hand = ("your mouse leads the hand" if leads else "its device leads z, your mouse x and y" if sideways
+                else "its device leads the hand, the window watches")  # fmt: skip
         pace = PACE_REASONS["hard" if session.pace == "hard" else "wall"]
         print(f"{path.name}: {pace}; {hand}; Q in the window leaves, Escape stops", flush=True)
         print(session.guarantee().hand, flush=True)

@@ -18,6 +18,8 @@ from nanotouch_app.live.reel import world_of
 
 ARM, RESCALE, SETTING, SCENE = 2, 4, 6, 7  # nt_event_kind of session.h
 WATCHED, LED = "watched: its program leads the hand", "your hand on the session of another program"
+LEAD = "Scroll down until you feel it."
+SIDEWAYS = "its device leads z, your mouse x and y"
 TAKEN = "another program drives this session; it may be asked again one second after its last request"
 LONGEST = 0.1  # what a hand does by itself in one turn [s]
 Message = dict[str, Any]
@@ -42,10 +44,13 @@ class Lease:
 
 
 class Remote:
-    """Changes, stop and arm of a session that this window does not lead; with ``leads`` its hand, too."""
+    """Changes, stop and arm of a session that this window does not lead; with ``leads`` its hand, too, with
+    ``sideways`` in x and y alone."""
 
-    def __init__(self, name: str, observer: nt.frames.Observer, leads: bool = False) -> None:
-        self.name, self.observer, self.leads = name, observer, leads
+    def __init__(
+        self, name: str, observer: nt.frames.Observer, leads: bool = False, sideways: bool = False
+    ) -> None:  # fmt: skip
+        self.name, self.observer, self.leads, self.sideways = name, observer, leads or sideways, sideways
         self.hand: Hand | None = None
         self.turned = time.monotonic()
         self.lease = Lease(name)
@@ -58,11 +63,15 @@ class Remote:
         """The world, if it is another one than at the last call: the session has said so, whoever changed it."""
         if self.observer.changes != self.described:
             text, self.described = self.observer.description, self.observer.changes
-            self.world, self._changed = world_of(json.loads(text), self.name, LED if self.leads else WATCHED), True
-            self.world["hint"] = "Scroll down until you feel it." if self.leads else ""
+            self.world, self._changed = world_of(json.loads(text), self.name, self._source()), True
+            hint = "Drag over the surface: the device leads the height." if self.sideways else LEAD
+            self.world["hint"] = hint if self.leads else ""
             self.hand = None  # it begins anew where it is, in the world as it is now
         changed, self._changed = self._changed, False
         return copy.deepcopy(self.world) if changed else None
+
+    def _source(self) -> str:
+        return SIDEWAYS if self.sideways else LED if self.leads else WATCHED
 
     def ask(self, message: Message, frame: Any = None) -> None:
         """Post a request; what a window without a hand cannot ask is refused."""
@@ -79,11 +88,13 @@ class Remote:
 
     def _lead(self, message: Message, frame: Any) -> None:
         """Move the hand, from where it is at its first move."""
+        if self.sideways and message["do"] != "move":
+            raise Error("the device leads the height; drag to lead x and y")
         if frame is None or not self.world:
             return
         self.lease.take()
         if self.hand is None:
-            self.hand = Hand(self.world, frame, self._post)
+            self.hand = Hand(self.world, frame, self._post, self.sideways)
         self.hand.answer(message, frame)
 
     def _post(self, kind: int, field: int, values: tuple[float, float, float, float]) -> None:
@@ -93,7 +104,7 @@ class Remote:
         """Some ten times a second: the hand goes on by itself; what is to be told of answers and of the world."""
         elapsed, self.turned = time.monotonic() - self.turned, time.monotonic()
         told: list[Message] = []
-        if self.hand is not None and frame is not None:
+        if self.hand is not None and frame is not None and not self.sideways:
             try:
                 self.hand.follow(frame, min(elapsed, LONGEST))
             except Error as error:  # another program has taken the lease

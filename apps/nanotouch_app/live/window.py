@@ -47,7 +47,7 @@ class Window:
 
     def __init__(
         self, surface: str, dark: bool = False, recording: str | None = None, watched: str | None = None,
-        hand: str = "none", leads: bool = False,
+        hand: str = "none", leads: bool = False, sideways: bool = False,
     ) -> None:  # fmt: skip
         self.vtk = parts.load()
         with np.load(surface) as stored:
@@ -85,7 +85,7 @@ class Window:
         self.leads = recording is None and watched is None
         self.remote: Remote | None = None
         if watched is not None:
-            self.watch(watched, leads)
+            self.watch(watched, leads, sideways)
         self.held, self.moved_at = Held(hands.opened(hand) if self.leads or leads else []), time.monotonic()
         self.dragging, self.at = "", np.zeros(2)
         self.pressing, self.lift_at = False, math.inf
@@ -158,10 +158,10 @@ class Window:
                 self._attach(message["name"])
             self.picture.hear(message)
 
-    def watch(self, name: str, leads: bool = False) -> None:
-        """Look at the session of another program; ``leads``: with a hand."""
+    def watch(self, name: str, leads: bool = False, sideways: bool = False) -> None:
+        """Look at the session of another program; ``leads``: with a hand, ``sideways``: in x and y alone."""
         self.observer, self.name = nt.frames.attach(name), name
-        self.remote = Remote(name, self.observer, leads)
+        self.remote = Remote(name, self.observer, leads, sideways)
         self._hear_remote()
 
     def _hear_remote(self) -> None:
@@ -382,10 +382,11 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--recording")
     parser.add_argument("--watch")
     parser.add_argument("--lead", action="store_true")
+    parser.add_argument("--sideways", action="store_true")
     parser.add_argument("--hand", default="none")
     args = parser.parse_args(arguments)
     try:
-        Window(args.surface, args.dark, args.recording, args.watch, args.hand, args.lead).run()
+        Window(args.surface, args.dark, args.recording, args.watch, args.hand, args.lead, args.sideways).run()
     except Error as error:
         print(error, file=sys.stderr)
         return 1

@@ -9,7 +9,7 @@ import itertools
 import os
 import subprocess
 import sys
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
@@ -34,9 +34,10 @@ class Watched(Protocol):
         """Show every tick under a name."""
 
 
-def watch(session: Watched, hand: bool = False) -> subprocess.Popen[str]:
+def watch(session: Watched, hand: bool | Literal["sideways"] = False) -> subprocess.Popen[str]:
     """Open a window that watches this session, in a process of its own; the session never waits for it. With ``hand``
-    its mouse, keys and other devices move the simulated hand, too, while no other program holds the lease.
+    its mouse, keys and other devices move the simulated hand, too, while no other program holds the lease; "sideways":
+    in x and y alone, where a device of one axis leads z.
 
     Returns that process once its first picture is drawn; :class:`~nanotouch.errors.Error` where it cannot be. Not while
     the session runs in its own thread.
@@ -52,7 +53,7 @@ def watch(session: Watched, hand: bool = False) -> subprocess.Popen[str]:
     heights, pixel_size, origin = _surface_of(session)
     np.savez(surface, heights=heights, pixel_size=np.asarray(pixel_size), origin=np.asarray(origin))
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    options = ["--lead", "--hand", "auto"] if hand else []
+    options = ["--sideways"] if hand == "sideways" else ["--lead", "--hand", "auto"] if hand else []
     said = folder.path / "said.txt"
     with open(said, "wb") as errors:
         window = subprocess.Popen(
