@@ -26,6 +26,7 @@ from .._arrays import Floats
 from ..errors import require
 from . import rows
 from ._robust import MAD
+from .rows import RowProfile
 
 _LINE = 25.0  # times the median of its neighbours a frequency is one of a grating
 _FINE = 24.0  # [row]; below this period no bow can be told from the grating
@@ -56,6 +57,8 @@ class Drift:
         Whether a grating along the rows was found.
     period : float or None
         Its period [row], by its spectrum.
+    rows : RowProfile
+        What rows.py tells of the same strips.
     """
 
     offsets: Floats
@@ -63,6 +66,7 @@ class Drift:
     jumps: tuple[float, ...]
     structure: bool
     period: float | None
+    rows: RowProfile
 
     @property
     def fine(self) -> bool:
@@ -76,18 +80,18 @@ def analyse(strips: Floats) -> Drift:
     found = rows.analyse(strips)
     period = _period(profile) or found.period
     if period is not None:
-        return Drift(found.offsets, 0.0, (), True, period)
+        return Drift(found.offsets, 0.0, (), True, period, found)
     jumps = _jumps(strips, profile)
     heights = np.abs([height for *_, height in jumps])
     if len(jumps) > 2:
         middle = float(np.median(heights))
         if MAD * float(np.median(np.abs(heights - middle))) <= _LIKE * middle:
-            return Drift(found.offsets, 0.0, tuple(h for *_, h in jumps), True, None)
+            return Drift(found.offsets, 0.0, tuple(h for *_, h in jumps), True, None, found)
         jumps = [jump for jump in jumps if abs(jump[2]) > _DWARFS * middle]
     rest = strips - found.offsets[:, None]
     steps = _steps(rows.summed(np.diff(rest, axis=0)), jumps)
     lasting = _drift(rest, steps)
-    return Drift(found.offsets + lasting, float(np.ptp(lasting)), tuple(h for *_, h in jumps), False, None)
+    return Drift(found.offsets + lasting, float(np.ptp(lasting)), tuple(h for *_, h in jumps), False, None, found)
 
 
 def anisotropy(strips: Floats) -> float:
@@ -106,11 +110,19 @@ def _period(profile: Floats) -> float | None:
     if len(steps) < 2 * _NEAR:
         return None
     power = np.abs(np.fft.rfft((steps - steps.mean()) * np.hanning(len(steps)))) ** 2
-    for k in range(3, len(power) - 1):
-        near = np.concatenate([power[max(1, k - 10) : max(1, k - 2)], power[k + 3 : k + 11]])
-        if power[k] > _LINE * max(float(np.median(near)), 1e-300) and power[k] >= power[k + 1]:
-            return len(steps) / k
-    return None
+    k = np.arange(3, len(power) - 1)
+    usual = _middle_of_neighbours(power, k)
+    lines = (power[k] > _LINE * np.maximum(usual, 1e-300)) & (power[k] >= power[k + 1])
+    return len(steps) / int(k[np.argmax(lines)]) if lines.any() else None
+
+
+def _middle_of_neighbours(power: Floats, k: NDArray[np.int_]) -> Floats:
+    """Median over the eight frequencies from two away on either side; the mean is no neighbour."""
+    place = k[:, None] + np.r_[-10:-2, 3:11]
+    inside = (place >= 1) & (place < len(power))
+    near = np.sort(np.where(inside, power[np.clip(place, 0, len(power) - 1)], np.inf), axis=1)
+    count, row = inside.sum(axis=1), np.arange(len(k))
+    return np.asarray(0.5 * (near[row, np.maximum(count - 1, 0) // 2] + near[row, count // 2 - (count == 0)]))
 
 
 def _jumps(strips: Floats, profile: Floats) -> list[tuple[int, int, float]]:

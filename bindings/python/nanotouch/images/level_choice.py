@@ -27,37 +27,36 @@ _ROWS = {
 }
 
 
-def choose(topography: Topography, used: NDArray[np.bool_] | None) -> tuple[Candidate, ...]:
-    """What is chosen, the runner-up, and the others."""
-    flat = _without("plane", topography, used)
-    bent = drift.bends(flat) and not drift.analyse(flat).fine
-    background, other = ("poly2", "plane") if bent else ("plane", "poly2")
-    listed = [
-        _judged(f"{first}+{then}", topography, used)
-        for first, then in ((background, "lines"), (background, "rows"), (background, "medians"), (other, "lines"))
-    ]
-    if listed[0].step_kept < _SURVIVES or listed[0].rms > _NO_DRIFT * listed[1].rms:
+def choose(topography: Topography, used: NDArray[np.bool_] | None) -> tuple[Job, tuple[Candidate, ...]]:
+    """The image with the chosen method applied; what was chosen, the runner-up, and the others."""
+    plane = Job(topography, used)
+    plane.take_out("plane")
+    along = plane.look()
+    bent = Job(topography, used, rows_stray=along.structure)
+    bows = drift.bends(plane.strips) and not along.fine
+    if bows:
+        bent.take_out("poly2")
+    first, other = (("poly2", bent), ("plane", plane)) if bows else (("plane", plane), ("poly2", bent))
+    listed = [_judged(*first, then) for then in ("lines", "rows", "medians")]
+    if not bows:
+        bent.take_out("poly2")
+    listed.append(_judged(*other, "lines"))
+    if listed[0][1].step_kept < _SURVIVES or listed[0][1].rms > _NO_DRIFT * listed[1][1].rms:
         listed[:2] = listed[1::-1]
-    return tuple(listed)
+    return listed[0][0], tuple(candidate for _, candidate in listed)
 
 
-def _without(background: str, topography: Topography, used: NDArray[np.bool_] | None) -> Floats:
-    job = Job(topography, used)
-    job.take_out(background)
-    return job.strips
-
-
-def _judged(method: str, topography: Topography, used: NDArray[np.bool_] | None) -> Candidate:
-    job = Job(topography, used)
-    background, then = method.split("+")
-    job.take_out(background)
+def _judged(background: str, begun: Job, then: str) -> tuple[Job, Candidate]:
+    """A background that was taken out, and the rows after it."""
+    begun.look()
+    job = begun.copy()
     flat, remove = job.strips, _ROWS[then]
     job.take_out(then)
-    offsets = remove(flat)
+    offsets = job.offsets
     half = flat[:, 1::2] - remove(flat[:, ::2])[:, None]
     held_out = np.diff(rows.summed(np.diff(half, axis=0)))
-    return Candidate(
-        method,
+    return job, Candidate(
+        f"{background}+{then}",
         float(np.nanstd(job.strips)),
         float(np.sqrt(np.mean(held_out**2))),
         drift.anisotropy(job.strips),

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -27,8 +28,10 @@ class Job:
     They work on strips, means over blocks along the rows; the image itself is touched once, at the end.
     """
 
-    def __init__(self, topography: Topography, used: NDArray[np.bool_] | None) -> None:
+    def __init__(self, topography: Topography, used: NDArray[np.bool_] | None, *, rows_stray: bool = False) -> None:
+        """rows_stray: what lasts from row to row is not taken out, so that it would tell a bow along y falsely."""
         z = topography.heights
+        self.rows_stray = rows_stray
         self.topography, self.used = topography, used
         self.width = reduction(z.shape[1])
         known = z if used is None else np.where(used, z, np.nan)
@@ -45,6 +48,21 @@ class Job:
         self.background: tuple[str, terraces.Background] | None = None  # the last
         self.terraces: tuple[Terrace, ...] = ()
         self.zero: float | None = None  # [m]; the mean if None
+        self._seen: tuple[Floats, drift.Drift] | None = None
+        self.offsets: Floats = np.zeros(len(z))  # of rows, the last that were taken out [m]
+
+    def look(self) -> drift.Drift:
+        """What the rows show as they are."""
+        if self._seen is None or self._seen[0] is not self.strips:
+            self._seen = self.strips, drift.analyse(self.strips)
+        return self._seen[1]
+
+    def copy(self) -> Job:
+        """The same, to go on in another way."""
+        made = copy(self)
+        made.by_row, made.by_column, made.tilt = self.by_row.copy(), self.by_column.copy(), self.tilt.copy()
+        made.steps, made.warnings = list(self.steps), list(self.warnings)
+        return made
 
     def take_out(self, method: str) -> None:
         """Apply one method to the strips and add to what is to be removed."""
@@ -59,7 +77,7 @@ class Job:
         shape = self.topography.shape
         order = int(method[4:]) if method.startswith("poly") else 1
         if again is None:
-            found = terraces.fit(self.strips, shape, order, self.floor)
+            found = terraces.fit(self.strips, shape, order, self.floor, along_y=1 if self.rows_stray else order)
         else:
             found = terraces.refit(self.strips, shape, again)
         removed = found.values(shape, (1, self.width))
@@ -96,8 +114,9 @@ class Job:
                 )
 
     def _take_out_lines(self) -> None:
-        found = drift.analyse(self.strips)
+        found = self.look()
         self.strips = self.strips - found.offsets[:, None]
+        self.offsets = found.offsets
         self.by_row += found.offsets
         note = f"offsets of rows, and {length(found.lasting)} of drift along y"
         if found.structure:
@@ -114,10 +133,11 @@ class Job:
             self._take_out_background(method, background if found.structure else None)
 
     def _take_out_rows(self, method: str) -> None:
-        found = rows.analyse(self.strips)
-        self._along = drift.analyse(self.strips)
+        self._along = self.look()
+        found = self._along.rows
         removed = found.offsets if method == "rows" else rows.medians(self.strips)
         self.strips = self.strips - removed[:, None]
+        self.offsets = removed
         self.by_row += removed
         note, warning = (self._rows_verdict if method == "rows" else self._medians_verdict)(found)
         if warning:

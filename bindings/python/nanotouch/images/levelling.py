@@ -22,7 +22,7 @@ from ._robust import used_pixels
 from .despeckling import DespeckleReport, despeckle
 from .level_choice import choose
 from .level_job import Job
-from .level_report import LevelReport
+from .level_report import Candidate, LevelReport
 from .topography import READY, Topography
 
 _METHOD = re.compile(r"plane|poly[2-6]|lines|rows|medians|terraces")
@@ -91,10 +91,13 @@ def level(
             "several of them joined by +"
         )
     used = used_pixels(topography, mask, terraces.SMALLEST_PIECE)
-    candidates = choose(topography, used) if method == "auto" else ()
-    job = Job(topography, used)
-    for name in candidates[0].method.split("+") if candidates else methods:
-        job.take_out(name)
+    candidates: tuple[Candidate, ...] = ()
+    if method == "auto":
+        job, candidates = choose(topography, used)
+    else:
+        job = Job(topography, used)
+        for name in methods:
+            job.take_out(name)
     levelled, report = job.result(method)
     for text in report.warnings:
         warnings.warn(text, stacklevel=2)

@@ -53,6 +53,7 @@ class Background:
     coefficients: Floats
     labels: NDArray[np.int32]  # of the blocks: from 1, 0 where steep
     pieces: int
+    along_y: int = 6  # highest order along y that was fitted
 
     def plane(self, shape: tuple[int, int]) -> tuple[Floats, Floats]:
         """The terms of first order, along y and along x [m]: the plane is their sum."""
@@ -81,7 +82,9 @@ def basis(n: int, order: int, size: int) -> Floats:
     return block_means(np.asarray(legendre.legvander(places(n), order), np.float64), size, 0)
 
 
-def fit(strips: Floats, shape: tuple[int, int], order: int, floor: float) -> Background:
+def fit(
+    strips: Floats, shape: tuple[int, int], order: int, floor: float, *, along_y: int | None = None
+) -> Background:
     """The polynomial of a total order that the flat pieces agree on.
 
     Parameters
@@ -94,7 +97,10 @@ def fit(strips: Floats, shape: tuple[int, int], order: int, floor: float) -> Bac
         1 for a plane.
     floor : float
         Differences from block to block below this are never steep: the digitiser's step [m].
+    along_y : int, optional
+        Highest order along y where that is less.
     """
+    highest = order if along_y is None else along_y
     fy, fx = reduction(shape[0]), reduction(shape[1])
     blocks = block_means(strips, fy, 0)
     known = np.isfinite(blocks)
@@ -111,12 +117,12 @@ def fit(strips: Floats, shape: tuple[int, int], order: int, floor: float) -> Bac
     settled = 0.01 * MAD * _known_middle(np.abs(np.diff(rest, axis=1)))
     for _ in range(_ROUNDS):
         labels, pieces = _cut(rest, known, floor)
-        change = _change(rest, labels, vy, vx)
+        change = _change(rest, labels, vy, vx, highest)
         coefficients += change
         rest = blocks - vy @ coefficients @ vx.T
         if np.abs(change).max() <= settled:
             break
-    return Background(coefficients, labels, pieces)
+    return Background(coefficients, labels, pieces, highest)
 
 
 def levels(strips: Floats, background: Background) -> tuple[tuple[Terrace, ...], float]:
@@ -148,7 +154,7 @@ def refit(strips: Floats, shape: tuple[int, int], found: Background) -> Backgrou
     order = len(found.coefficients) - 1
     blocks = block_means(strips, len(strips) // len(found.labels), 0)
     vy, vx = (basis(n, order, n // m) for n, m in zip(shape, found.labels.shape, strict=True))
-    return Background(_change(blocks, found.labels, vy, vx), found.labels, found.pieces)
+    return Background(_change(blocks, found.labels, vy, vx, found.along_y), found.labels, found.pieces, found.along_y)
 
 
 def _known_middle(steps: Floats) -> float:
@@ -178,13 +184,13 @@ def _cut(rest: Floats, known: NDArray[np.bool_], floor: float) -> tuple[NDArray[
     return new_label[labels], int(kept.sum())
 
 
-def _change(rest: Floats, labels: NDArray[np.int32], vy: Floats, vx: Floats) -> Floats:
+def _change(rest: Floats, labels: NDArray[np.int32], vy: Floats, vx: Floats, along_y: int) -> Floats:
     """Change of the coefficients by Huber-weighted least squares with a free height for each piece.
 
     The least-norm solution leaves a direction alone in which no piece extends.
     """
     order = vy.shape[1] - 1
-    terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a) if a + b]
+    terms = [(a, b) for a in range(min(order, along_y) + 1) for b in range(order + 1 - a) if a + b]
     inside = sample(np.flatnonzero(labels), _ENOUGH)
     j, i = np.divmod(inside, labels.shape[1])
     piece = labels[j, i] - 1
