@@ -92,6 +92,8 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@$(VENV)/python tests/heavy/push.py
 	@$(VENV)/python tests/heavy/rods.py
 	@$(VENV)/python tests/heavy/fit_ting.py
+	@$(VENV)/python tests/heavy/verdicts.py 300
+	@$(VENV)/python tests/heavy/verdicts.py 300 --held-out
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev --target test_fit_memory
 	@build/dev/tests/c/test_fit_memory every

@@ -153,6 +153,7 @@ set(nanotouch_sources_curves
     curves/ringing.c
     curves/robust.c
     curves/ruptures.c
+    curves/straight.c
     curves/wave.c)
 set(nanotouch_sources_hal hal/capabilities.c hal/hal.c hal/rehearsal.c hal/replay_half.c hal/timing.c)
 set(nanotouch_sources_chips
@@ -282,6 +283,7 @@ set(nanotouch_sources_host
     host/trainer.c)
 set(nanotouch_sources_fit
     fit/batch.cpp
+    fit/branches.cpp
     fit/contact_model.cpp
     fit/curve.cpp
     fit/custom_model.cpp
@@ -300,6 +302,7 @@ set(nanotouch_sources_fit
     fit/path_guess.cpp
     fit/path_law.cpp
     fit/points.cpp
+    fit/power.cpp
     fit/problem.cpp
     fit/profile.cpp
     fit/rating.cpp

@@ -11,6 +11,7 @@
 #include "curves/parts.h"
 #include "curves/ringing.h"
 #include "curves/robust.h"
+#include "curves/straight.h"
 
 static const double largest_value = 1.0; /* m or N: beyond, the unit is surely not SI */
 static const double faint = 2.0;         /* times the visible force, below which a dip is hardly told from noise */
@@ -195,6 +196,8 @@ nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, do
         nt_curve_doubt_ringing(reading);
         hold_last_reading(curve->spring_constant, reading);
     }
+    if (choice->kind == NT_CURVE_AUTO)
+        nt_curve_doubt_straightness(reading);
     const nt_curve_branch *first = reading->approach.count ? &reading->approach : &reading->retract;
     if (first->count) {
         nt_curve_find_contact(first, curve->spring_constant, free, reading);

@@ -11,6 +11,7 @@
 
 #include "core/problem.h"
 #include "points.hpp"
+#include "power.hpp"
 #include "solving.hpp"
 
 namespace nanotouch
@@ -39,9 +40,31 @@ nt_fit_known known_of(const nt_fit_recipe &recipe, const nt_curve_branch &branch
     return known;
 }
 
-nt_status fit_branch(const nt_fit_recipe &recipe, double spring_constant, const nt_curve_branch &branch,
+// What the free part and the other branch say against a law without adhesion.
+void doubt_contact(const nt_fit_recipe &recipe, double spring_constant, const nt_curve_reading &read,
+                   const nt_fit_solution &solution, nt_fit_outcome *outcome)
+{
+    const nt_curve_branch &branch = recipe.approach ? read.approach : read.retract;
+    double further, left, kept_back;
+    if (nt_fit_begins_in_contact(&branch, outcome->reading.noise, spring_constant, &further, &left)) {
+        outcome->flags |= NT_FIT_BEGINS_IN_CONTACT;
+        std::fill_n(outcome->fit.identifiable, NT_FIT_PARAMETERS, 0);
+    }
+    if (!has_power(solution.options))
+        return;
+    const nt_fit_branches branches = {
+        &read.approach,   &read.retract, read.ruptures, spring_constant, -solution.fit.value[NT_FIT_CONTACT_POINT],
+        solution.power[1]};
+    const unsigned doubts = nt_fit_branch_doubts(&branches, &kept_back);
+    if (doubts)
+        outcome->fit.identifiable[NT_FIT_EFFECTIVE_MODULUS] = 0;
+    outcome->flags |= doubts;
+}
+
+nt_status fit_branch(const nt_fit_recipe &recipe, double spring_constant, const nt_curve_reading &read,
                      nt_fit_outcome *outcome)
 {
+    const nt_curve_branch &branch = recipe.approach ? read.approach : read.retract;
     if (!(spring_constant > 0.0 && spring_constant < largest_spring_constant)) {
         outcome->problem = nt_problem_of("spring_constant", "N/m", spring_constant, 0.0, largest_spring_constant);
         return std::isnan(spring_constant) ? NT_E_NOT_FINITE : NT_E_RANGE;
@@ -64,12 +87,8 @@ nt_status fit_branch(const nt_fit_recipe &recipe, double spring_constant, const 
     outcome->flags = solving.solution().flags;
     if (std::hypot(branch.baseline.wave.cosine, branch.baseline.wave.sine) > 0.0)
         outcome->flags |= NT_FIT_WAVES;
-    double further, left;
-    const bool adhesive = nt_fit_describe(recipe.options.model).pull_off > 0.0;
-    if (!adhesive && nt_fit_begins_in_contact(&branch, outcome->reading.noise, spring_constant, &further, &left)) {
-        outcome->flags |= NT_FIT_BEGINS_IN_CONTACT;
-        std::fill_n(outcome->fit.identifiable, NT_FIT_PARAMETERS, 0);
-    }
+    if (!(nt_fit_describe(recipe.options.model).pull_off > 0.0))
+        doubt_contact(recipe, spring_constant, read, solving.solution(), outcome);
     return NT_OK;
 }
 
@@ -108,8 +127,7 @@ void fit_recorded(const nt_fit_recipe &recipe, const nt_curve &curve, nt_fit_out
         outcome->status = NT_E_RANGE;
         return;
     }
-    outcome->status =
-        fit_branch(recipe, curve.spring_constant, recipe.approach ? read.approach : read.retract, outcome);
+    outcome->status = fit_branch(recipe, curve.spring_constant, read, outcome);
     if (outcome->status != NT_OK)
         outcome->flags = 0;
 }

@@ -14,6 +14,7 @@
 #include "fit/models/row.h"
 #include "halves.hpp"
 #include "model.hpp"
+#include "power.hpp"
 #include "solve.hpp"
 
 namespace nanotouch
@@ -32,6 +33,8 @@ constexpr double torn_elsewhere = 2.5; // standard deviations of the place of th
 constexpr double contradiction = 4.0;  // standard deviations of the sensitivity
 constexpr double much_better = 0.7;    // ratio of residuals
 constexpr double moved = 0.5;          // of ln E*
+constexpr double gaussian = 1.96;      // half width of 95 %, in standard deviations
+constexpr double precise = 0.1823;     // ln 1.2: what 95 % of E* may be off by from noise and baseline
 constexpr double computed = 1e-9;      // noise over force of points in which nothing is to be weighed
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -314,10 +317,44 @@ void Solving::judge()
         }
     }
     solution_.flags |= flags;
-    solution_.half_modulus[0] = solution_.half_modulus[1] = not_a_number;
-    if (asks(options, NT_FIT_EFFECTIVE_MODULUS, "effective_modulus") &&
-        asks(options, NT_FIT_CONTACT_POINT, "contact_point") && !is_exact())
-        compare_halves(points_, data_, std::max(noise(), fit.residual_noise), &solution_);
+    solution_.half_modulus[0] = solution_.half_modulus[1] = solution_.power[0] = solution_.power[1] = not_a_number;
+    if (asks(options, NT_FIT_EFFECTIVE_MODULUS, "effective_modulus") && !is_exact())
+        doubt_modulus();
+}
+
+// Of the law's shape, and of what noise leaves: each puts E* in doubt.
+void Solving::doubt_modulus()
+{
+    nt_fit_result &fit = solution_.fit;
+    const nt_fit_options &options = solution_.options;
+    const double point_noise = std::max(noise(), fit.residual_noise);
+    unsigned doubts = 0U;
+    if (asks(options, NT_FIT_CONTACT_POINT, "contact_point"))
+        compare_halves(points_, data_, point_noise, &solution_);
+    const bool known = fit.identifiable[NT_FIT_EFFECTIVE_MODULUS];
+    const bool imprecise = known && !(gaussian * noise_of_modulus() < precise);
+    if (imprecise)
+        doubts |= NT_FIT_IMPRECISE;
+    if (has_power(options)) {
+        find_power(points_, data_, point_noise, &solution_);
+        const bool is_good = known && !imprecise && !(solution_.flags & NT_FIT_MISFIT);
+        if (asks_other_power(solution_) || (is_good && is_rivalled(solution_, data_)))
+            doubts |= NT_FIT_OTHER_POWER;
+    }
+    if (doubts)
+        fit.identifiable[NT_FIT_EFFECTIVE_MODULUS] = 0;
+    solution_.flags |= doubts;
+}
+
+// What noise and baseline leave of E*, relative: with the sensitivity known exactly.
+double Solving::noise_of_modulus() const
+{
+    const double (*covariance)[NT_FIT_PARAMETERS] = solution_.fit.covariance;
+    const double own = covariance[NT_FIT_SENSITIVITY][NT_FIT_SENSITIVITY],
+                 both = covariance[NT_FIT_EFFECTIVE_MODULUS][NT_FIT_SENSITIVITY],
+                 by_sensitivity = own > 0.0 && std::isfinite(own) ? both * both / own : 0.0;
+    const double variance = covariance[NT_FIT_EFFECTIVE_MODULUS][NT_FIT_EFFECTIVE_MODULUS] - by_sensitivity;
+    return std::sqrt(std::max(variance, 0.0)) / solution_.fit.value[NT_FIT_EFFECTIVE_MODULUS];
 }
 
 nt_status Solving::run()

@@ -41,6 +41,8 @@ class Solving
     double noise() const; // of the free cantilever, as far as the points are worth independent ones [N]
     double rating() const;
     void judge();
+    void doubt_modulus();
+    double noise_of_modulus() const;
 
     const nt_fit_options &given_;
     const nt_fit_known &known_;

@@ -137,6 +137,37 @@ static std::tuple<bool, double, double> begins_in_contact(const Array &z, const 
     return {begins, further, left};
 }
 
+// Of an analysed branch (nanotouch.curves.Branch) what nt_fit_branch_doubts reads.
+static nt_curve_branch branch_of(const py::object &found, const Array &z, const Array &force)
+{
+    nt_curve_branch branch{};
+    if (z.ndim() != 1 || force.ndim() != 1 || z.size() != force.size())
+        throw py::value_error("z and force must have one dimension and the same length");
+    branch.z = z.data();
+    branch.force = force.data();
+    branch.count = static_cast<long>(z.size());
+    branch.noise = found.attr("noise").cast<double>();
+    branch.dips = found.attr("dips").cast<bool>();
+    branch.torn = found.attr("tear").is_none() ? -1 : found.attr("tear").cast<long>();
+    const auto [depth, at, sigma] = found.attr("dip").cast<std::tuple<double, double, double>>();
+    branch.dip = {depth, sigma};
+    branch.dip_z = at;
+    branch.contact_slope.value = std::get<0>(found.attr("contact_slope").cast<std::tuple<double, double>>());
+    return branch;
+}
+
+static std::pair<unsigned, double> branch_doubts(const py::object &approach, const py::object &retract, int ruptures,
+                                                 const std::array<double, 3> &fitted)
+{
+    const Array z[2] = {approach.attr("z").cast<Array>(), retract.attr("z").cast<Array>()},
+                force[2] = {approach.attr("force").cast<Array>(), retract.attr("force").cast<Array>()};
+    const nt_curve_branch one = branch_of(approach, z[0], force[0]), other = branch_of(retract, z[1], force[1]);
+    const nt_fit_branches branches = {&one, &other, ruptures, fitted[0], fitted[1], fitted[2]};
+    double kept_back;
+    const unsigned doubts = nt_fit_branch_doubts(&branches, &kept_back);
+    return {doubts, kept_back};
+}
+
 static nt_fit_recipe recipe_of(const Options &options)
 {
     if (options.own)
@@ -167,6 +198,10 @@ static py::dict flag_bits()
     flags["torn_elsewhere"] = int(NT_FIT_TORN_ELSEWHERE);
     flags["uneven"] = int(NT_FIT_UNEVEN);
     flags["begins_in_contact"] = int(NT_FIT_BEGINS_IN_CONTACT);
+    flags["imprecise"] = int(NT_FIT_IMPRECISE);
+    flags["other_power"] = int(NT_FIT_OTHER_POWER);
+    flags["adhesive"] = int(NT_FIT_ADHESIVE);
+    flags["hysteresis"] = int(NT_FIT_HYSTERESIS);
     return flags;
 }
 
@@ -211,6 +246,8 @@ void bind_batch(py::module_ &module)
     module.attr("good_rating") = NT_FIT_GOOD;
     module.def("begins_in_contact", &begins_in_contact, py::arg("z"), py::arg("force"), py::arg("baseline"),
                py::arg("noise"), py::arg("spring_constant"));
+    module.def("branch_doubts", &branch_doubts, py::arg("approach"), py::arg("retract"), py::arg("ruptures"),
+               py::arg("fitted")); // spring constant [N/m], contact point as z [m], sigma of the power
     module.def("rating", &rating, py::arg("indentation"), py::arg("force"), py::arg("fitted"), py::arg("noise"));
     module.def("batch", &batch, py::arg("recipe"), py::arg("z"), py::arg("force"), py::arg("edges"),
                py::arg("spring_constant"), py::arg("threads"));

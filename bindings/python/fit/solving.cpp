@@ -129,6 +129,8 @@ void bind_solving(py::module_ &module)
         .def_property_readonly(
             "half_modulus",
             [](const Solution &solution) { return py::make_tuple(solution.half_modulus[0], solution.half_modulus[1]); })
+        .def_property_readonly(
+            "power", [](const Solution &solution) { return py::make_tuple(solution.power[0], solution.power[1]); })
         .def("shift", &shift, py::arg("position"), py::arg("force"), py::arg("changed"))
         .def("bounds", &bounds, py::arg("position"), py::arg("force"), py::arg("place"));
     py::dict calibrations;

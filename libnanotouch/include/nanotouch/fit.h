@@ -200,8 +200,14 @@ typedef enum nt_fit_flag {
     NT_FIT_TORN_ELSEWHERE = 128, /* than where this contact and cantilever let go: the tear is not used */
     NT_FIT_UNEVEN = 1 << 20,     /* shallow and deep half of the contact ask for different E* and contact points: their
                                     sigma covers half of that */
-    NT_FIT_BEGINS_IN_CONTACT = 1 << 21 /* no part of the branch is surely free: nothing is determined; of recorded
-                                          curves, and laws without adhesion */
+    NT_FIT_BEGINS_IN_CONTACT = 1 << 21, /* no part of the branch is surely free: nothing is determined; of recorded
+                                           curves, and laws without adhesion */
+    /* Of laws without adhesion, each leaves E* undetermined; the last two of recorded curves with both branches. */
+    NT_FIT_IMPRECISE = 1 << 22,   /* noise and baseline leave E* a 95 % interval beyond +-20 %; of every law */
+    NT_FIT_OTHER_POWER = 1 << 23, /* the force rises with another power of the indentation, or a cone (of a cone: a
+                                     paraboloid) describes it better */
+    NT_FIT_ADHESIVE = 1 << 24,    /* the tip snaps in, or is torn off a contact */
+    NT_FIT_HYSTERESIS = 1 << 25   /* the retraction returns another work than the approach puts in */
 } nt_fit_flag;
 
 typedef struct nt_fit_solution {
@@ -212,6 +218,8 @@ typedef struct nt_fit_solution {
     unsigned flags;         /* nt_fit_flag */
     int exact;              /* 1: the law leaves nothing but rounding */
     double half_modulus[2]; /* E* that the shallow and the deep half of the contact ask for [Pa]; NaN where untold */
+    double power[2]; /* of the indentation with which the force rises, and its sigma [-]; of laws without adhesion; NaN
+                        where untold */
     double any_sensitivity, any_modulus, any_rms; /* fitted with any sensitivity [-], [Pa], [N]; NaN without need */
 } nt_fit_solution;
 /* Fits with the noise of the free cantilever, then once more with the scatter that is left where that is more: a law
@@ -273,6 +281,18 @@ typedef struct nt_fit_reading {
  * baseline ends, with so much *left over, RMS [N]. 0: the branch has a free part. */
 NT_API int nt_fit_begins_in_contact(const nt_curve_branch *branch, double noise, double spring_constant,
                                     double *further, double *left);
+
+/* What both branches of a recorded curve say against a law without adhesion that was fitted to its approach. */
+typedef struct nt_fit_branches {
+    const nt_curve_branch *approach, *retract;
+    int ruptures;           /* of the retraction */
+    double spring_constant; /* [N/m] */
+    double contact_point;   /* fitted, as z of the base [m] */
+    double power_sigma;     /* of the solution [-]; NaN: unknown */
+} nt_fit_branches;
+/* NT_FIT_ADHESIVE, NT_FIT_HYSTERESIS; returned: which part of the work of the approach the retraction keeps back [-];
+ * NaN where one of them shows no contact. */
+NT_API unsigned nt_fit_branch_doubts(const nt_fit_branches *branches, double *kept_back);
 
 typedef struct nt_fit_outcome {
     nt_status status;       /* NT_OK; NT_E_NOT_FINITE, NT_E_RANGE (values or too few points); or as nt_fit_run */

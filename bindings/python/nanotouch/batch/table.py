@@ -100,8 +100,8 @@ def _reason(result: FitResult) -> str:
         return "the fit stopped before it converged"
     if result.rating == 0.0:
         return "no contact rises above ten times the noise"
-    if result.reason:
-        return result.reason
+    if result.reason or result.doubt:
+        return result.reason or result.doubt
     if result.status == "misfit":
         return "the model does not describe the curve"
     missing = [name for name, known in result.identifiable.items() if not known]

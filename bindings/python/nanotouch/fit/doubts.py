@@ -10,11 +10,13 @@ import numpy as np
 
 from nanotouch._io.words import times
 
+from .models import built_in
 from .result import MISFIT
 from .show import with_sigma
 from .solving import Setup, Solution
 from .uncertainties import Uncertainties
 
+_WIDEST = 0.8  # contact radius over R: a sphere's force is then 7 % off a paraboloid's
 _THICK = 2.0  # contact radius over thickness up to which the laws of layers hold
 _MISFITS = {"calibration", "misfit", "uneven", "wrong_model"}  # what a sample that relaxes shows to an elastic law
 _OF_THE_SAMPLE = 5  # places of the model's own parameters and the contact point; then the force offset
@@ -70,6 +72,12 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
         )
     if "uneven" in flagged and not relaxes:
         notes.append(_uneven(solution, identifiable.get("effective_modulus", True)))
+    if "other_power" in flagged and not relaxes:
+        if "uneven" not in flagged:  # else the halves bound it
+            reason = "the force rises with another power of the indentation than this law's"
+        notes.append(_power(setup, solution))
+    if "imprecise" in flagged:
+        notes.append("noise and baseline leave E* a 95 % interval of more than +-20 %: it counts as not determined")
     if "wrong_model" in flagged:
         reason = "the model does not describe the curve"
         notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")
@@ -88,6 +96,25 @@ def _uneven(solution: Solution, determined: bool) -> str:
         "point of its own: a slip, a bow of the scanner or another law; sigma covers half of the difference"
         + ("" if determined else ", and so E* is not determined")
     )
+
+
+def beyond(setup: Setup, solution: Solution) -> str:
+    """Why the law is not that of this contact, though the curve determines what it asks for; empty where it is."""
+    model, radius = setup.model, solution.found["contact_radius"]
+    if model.tip in ("paraboloid", "sphere") and model.name in built_in() and radius > _WIDEST * setup.radius:
+        return f"the contact radius is {radius / setup.radius:.2g} times the tip's"
+    if model.is_layer and radius > _THICK * setup.held.get("thickness", np.inf):
+        return "the contact radius is more than twice the layer's thickness"
+    return ""
+
+
+def _power(setup: Setup, solution: Solution) -> str:
+    power, sigma = solution.made.power
+    said = f"the force rises with the power {power:.2f} +- {sigma:.2f} of the indentation, by this law with "
+    said += f"{setup.model.exponent:g}, or another tip's law describes it better: "
+    if power > setup.model.exponent:
+        return said + "a sharper tip, a layer on a stiff ground (layer) or a soft film on the sample"
+    return said + "adhesion (dmt, jkr), a sample that flows, a blunter tip or a detector that saturates"
 
 
 def _wide(setup: Setup, solution: Solution) -> str:

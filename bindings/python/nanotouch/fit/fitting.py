@@ -168,7 +168,7 @@ def fit_curve(
         compiled, curve, setup, solution, uncertainties, report, branch, Sample(poisson_ratio, tip),
         assumptions, told,
     )  # fmt: skip
-    return made if chosen.adhesive else doubt_free_part(made, report, branch)
+    return made if chosen.adhesive else doubt_free_part(made, report, branch, solution.made.power[1])
 
 
 def _check_choices(curve: ForceCurve, loss: str, window_of: str, branch: str | None) -> float:

@@ -13,8 +13,8 @@ from nanotouch.curves import CurveReport, ForceCurve
 from nanotouch.errors import InvalidValue
 
 from .bound import bounds_of
-from .doubts import doubts
-from .models import Floats
+from .doubts import beyond, doubts
+from .models import Floats, extension
 from .points import Branch
 from .result import FitResult
 from .solving import Setup, Solution
@@ -105,7 +105,12 @@ def _bounds(
     much of the slope is the cantilever's."""
     if uncertainties.sensitivity <= 0.0 or solution.options.force_noise <= 0.0:
         return {}
-    made = {name: bounds_of(name, solution, uncertainties) for name in _BOUNDED if not identifiable.get(name, True)}
+    asked = [name for name in _BOUNDED if not identifiable.get(name, True)]
+    if solution.made.flags & extension().flags["imprecise"]:  # its own interval bounds it
+        return {"effective_modulus": table.interval()["effective_modulus"]} | {
+            name: bounds_of(name, solution, uncertainties) for name in asked if name != "effective_modulus"
+        }
+    made = {name: bounds_of(name, solution, uncertainties) for name in asked}
     if "effective_modulus" in made and np.isfinite(solution.made.half_modulus[0]):  # the halves of the contact differ
         (low, high), (least, most) = made["effective_modulus"], table.interval()["effective_modulus"]
         made["effective_modulus"] = min(low, least), max(high, most)
@@ -120,7 +125,7 @@ def _shifts(extension: ModuleType, solution: Solution, uncertainties: Uncertaint
 
 
 def make_result(
-    extension: ModuleType,
+    compiled: ModuleType,
     curve: ForceCurve,
     setup: Setup,
     solution: Solution,
@@ -135,8 +140,8 @@ def make_result(
     points, found, options = solution.points, solution.found, solution.options
     names = {i: parameter[0] for i, parameter in enumerate(options.parameters) if parameter is not None}
     free = [i for i in names if options.is_free(names[i])]
-    identifiable, notes, reason = doubts(extension, setup, solution, uncertainties)
-    shifts = _shifts(extension, solution, uncertainties)
+    identifiable, notes, reason = doubts(compiled, setup, solution, uncertainties)
+    shifts = _shifts(compiled, solution, uncertainties)
     together = _together(found, max(names), shifts, uncertainties)
     covariance = found["covariance"] + sum((np.outer(s, s) for s in shifts.values()), together)
     table = _table(found, options, names, shifts, np.diag(together))
@@ -176,6 +181,7 @@ def make_result(
         uncertainties=uncertainties,
         bounds=sample.with_bounds(bounds) if "youngs_modulus" in table.values else bounds,
         reason=reason,
+        doubt=beyond(setup, solution),
         choice=tip.choice,
         radius_given=tip.radius_given,
         assumed_tip=tip.assumed,

@@ -79,6 +79,8 @@ class FitResult:
         bound. Empty where `reason` stands against any.
     reason : str
         Why nothing follows for the sample, in a few words; empty where something does.
+    doubt : str
+        Why the law is not that of this contact, though the curve determines what it asks for; empty where it is.
     choice : str
         Why this law was fitted, where it was left open (``model="auto"``).
     rating : float
@@ -125,6 +127,7 @@ class FitResult:
     uncertainties: Uncertainties = field(default_factory=Uncertainties)
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     reason: str = ""
+    doubt: str = ""
     choice: str = ""
     rating: float = np.nan
     radius_given: bool = True
@@ -144,11 +147,13 @@ class FitResult:
     @property
     def status(self) -> Status:
         """``"ok"``, ``"not converged"``, ``"misfit"`` (the residuals are no noise, and large beside the load: a
-        rating below 4.5; or any rating below 1) or ``"undetermined"`` (a parameter of the sample is not determined);
-        the notes say what follows."""
+        rating below 4.5; or any rating below 1; or there is a `doubt`) or ``"undetermined"`` (a parameter of the sample
+        is not determined); the notes say what follows."""
         if not self.converged:
             return "not converged"
         if self.rating < REJECTED or (MISFIT < self.misfit < np.inf and not self.rating >= GOOD):
+            return "misfit"
+        if self.doubt and all(self.identifiable.values()):
             return "misfit"
         return "ok" if all(self.identifiable.values()) else "undetermined"
 

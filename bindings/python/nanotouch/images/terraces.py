@@ -82,9 +82,7 @@ def basis(n: int, order: int, size: int) -> Floats:
     return block_means(np.asarray(legendre.legvander(places(n), order), np.float64), size, 0)
 
 
-def fit(
-    strips: Floats, shape: tuple[int, int], order: int, floor: float, *, along_y: int | None = None
-) -> Background:
+def fit(strips: Floats, shape: tuple[int, int], order: int, floor: float, *, along_y: int | None = None) -> Background:
     """The polynomial of a total order that the flat pieces agree on.
 
     Parameters

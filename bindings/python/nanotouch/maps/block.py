@@ -37,6 +37,7 @@ PLAIN = {
     "contact_stiffness": ("N/m", "stiffness of the fitted contact at the deepest point"),
 }
 _GAUSSIAN = 1.959963984540054
+_OF_THE_LAW = ("begins_in_contact", "other_power", "adhesive", "hysteresis")
 _TELLS_NOTHING = 1e3  # a bound this many times the value
 EXCLUDED = "EXCLUDED"  # status of a curve that a person left out
 LOST = "LOST"  # status of a curve whose block killed the workers it was given to
@@ -103,7 +104,7 @@ def _least_modulus(settings: Settings, columns: Columns, found: dict[str, Any], 
     known, flags = settings.uncertainties, extension().flags
     if known.sensitivity == 0.0:
         return np.full(len(block), np.nan)
-    against = flags["calibration"] | flags["wrong_model"] | flags["misfit"] | flags["begins_in_contact"]
+    against = sum(flags[name] for name in ("calibration", "wrong_model", "misfit", *_OF_THE_LAW))
     unknown = (columns["flags"] & undetermined_flag(0) != 0) & (columns["flags"] & against == 0)
     slope, stiffness = found["contact_slope"], found["contact_stiffness"]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -111,7 +112,11 @@ def _least_modulus(settings: Settings, columns: Columns, found: dict[str, Any], 
         compliance = np.exp(_GAUSSIAN * spread) / slope - 1.0 / block.spring_constant
         least = columns["effective_modulus"] * (1.0 / (compliance * stiffness)) ** 1.5
         least *= np.exp(-_GAUSSIAN * np.hypot(known.spring_constant, 0.5 * known.radius))
-        return np.where(unknown & (slope > 0.0) & (compliance > 0.0), least, np.nan)
+        least = np.where(unknown & (slope > 0.0) & (compliance > 0.0), least, np.nan)
+        imprecise = unknown & (columns["flags"] & flags["imprecise"] != 0)
+        return np.where(
+            imprecise, columns["effective_modulus"] / np.exp(np.where(imprecise, _factor(columns), 0.0)), least
+        )
 
 
 def _most_modulus(columns: Columns) -> Floats:
@@ -120,13 +125,18 @@ def _most_modulus(columns: Columns) -> Floats:
     The upper end of its interval, symmetric in the logarithm; none where that is a thousand times the value.
     """
     flags = extension().flags
-    names = ("calibration", "wrong_model", "misfit", "stiff", "not_converged", "begins_in_contact")
+    names = ("calibration", "wrong_model", "misfit", "stiff", "not_converged", "wide", *_OF_THE_LAW)
     against = sum(flags[name] for name in names)
     unknown = (columns["flags"] & undetermined_flag(0) != 0) & (columns["flags"] & against == 0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        factor = _GAUSSIAN * columns["effective_modulus_sigma"] / columns["effective_modulus"]
+        factor = _factor(columns)
         tells = unknown & (factor < np.log(_TELLS_NOTHING))
         return np.where(tells, columns["effective_modulus"] * np.exp(np.where(tells, factor, 0.0)), np.nan)
+
+
+def _factor(columns: Columns) -> Floats:
+    """Logarithm of what the upper end of the 95 % interval of E* is over its value."""
+    return np.asarray(_GAUSSIAN * columns["effective_modulus_sigma"] / columns["effective_modulus"])
 
 
 def undetermined_flag(place: int) -> int:
