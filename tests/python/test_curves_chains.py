@@ -52,7 +52,7 @@ def test_three_chains_give_their_contour_lengths(kind: str, segment: float) -> N
     pulls, lengths = [], []
     for seed in range(4):
         curve = pulled(seed, contours, (200e-12, 250e-12, 300e-12), segment, kind)
-        found = curves.chains(curve, curves.analyse(curve), kind)  # type: ignore[arg-type]
+        found = curves.chains(curve, curves.analyse(curve), kind, segment_length="free")  # type: ignore[arg-type]
         assert len(found) == 3
         for chain, truth in zip(found, contours, strict=True):
             assert chain.misfit < 1.5
@@ -70,7 +70,7 @@ def test_contour_lengths_have_no_bias(kind: str, segment: float) -> None:
     contours, errors = (120e-9, 240e-9, 400e-9), []
     for seed in range(20, 32):
         curve = pulled(seed, contours, (200e-12, 250e-12, 300e-12), segment, kind)
-        found = curves.chains(curve, curves.analyse(curve), kind)  # type: ignore[arg-type]
+        found = curves.chains(curve, curves.analyse(curve), kind, segment_length="free")  # type: ignore[arg-type]
         errors += [chain.contour_length - truth for chain, truth in zip(found, contours, strict=True)]
     assert abs(np.mean(errors)) < 3.0 * np.std(errors) / np.sqrt(len(errors)) + 0.1e-9
 
@@ -93,7 +93,9 @@ def test_a_held_segment_length_and_what_is_refused() -> None:
     (chain,) = curves.chains(curve, report, segment_length=0.4e-9)
     assert chain.segment_length == pytest.approx(0.4e-9)
     assert chain.segment_length_sigma == 0.0
-    (free,) = curves.chains(curve, report)
+    (usual,) = curves.chains(curve, report)
+    assert usual == chain
+    (free,) = curves.chains(curve, report, segment_length="free")
     assert chain.contour_length_sigma < free.contour_length_sigma
     assert chain.contour_length == pytest.approx(300e-9, rel=0.02)
     with pytest.raises(InvalidValue, match="worm-like, freely-jointed"):
@@ -102,3 +104,14 @@ def test_a_held_segment_length_and_what_is_refused() -> None:
         curves.chains(curve, report, segment_length=1.0)
     with pytest.raises(InvalidValue, match="temperature"):
         curves.chains(curve, report, temperature=25000.0)
+
+
+def test_lengths_never_fall_within_a_pull() -> None:
+    """Steps 1 nm apart, within the noise of their lengths: as a free persistence length has it, they fell."""
+    for seed in range(4):
+        curve = pulled(seed, (300e-9, 301e-9, 302e-9), (100e-12, 160e-12, 250e-12), 0.4e-9, "worm-like", 20e-12)
+        found = curves.chains(curve, curves.analyse(curve))
+        lengths = [chain.contour_length for chain in found if np.isfinite(chain.contour_length)]
+        assert lengths
+        assert np.all(np.diff(lengths) >= 0.0)
+        assert all(abs(length / 301e-9 - 1.0) < 0.1 for length in lengths)

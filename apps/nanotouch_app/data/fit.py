@@ -47,6 +47,9 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help="which curve of a map (default: %(default)s)",
     )
+    parser.add_argument(
+        "--persistence", metavar="LENGTH|free", help="of the chains that ruptures end, held (default: 0.4nm), or fitted"
+    )
     add_table(parser)
     output.add_options(parser, "DIR|FILE.csv", "folder for the results, or a table with a row for each curve")
 
@@ -101,6 +104,11 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
     )
 
 
+def _persistence(args: argparse.Namespace) -> Any:
+    """Of the chains that ruptures end [m]; None: the usual one."""
+    return args.persistence if args.persistence in (None, "free") else parse_quantity(args.persistence, "m")
+
+
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     if args.stability and args.window is not None:
@@ -128,7 +136,7 @@ def run(args: argparse.Namespace) -> int:
         output.write_json(out / "fit.json", args.answer)
         fitting.draw(curve, result, save=out / "fit.png")
         if result.report.ruptures:
-            write_ruptures(out / "ruptures.csv", curves.chains(curve, result.report))
+            write_ruptures(out / "ruptures.csv", curves.chains(curve, result.report, segment_length=_persistence(args)))
         if result.time is not None:
             write_pauses(out / "pauses.csv", fitting.pauses(curve, result))
         if args.stability:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -23,6 +23,8 @@ ChainModel = Literal["worm-like", "freely-jointed"]
 BOLTZMANN = 1.380649e-23  # J/K
 _BOUCHIAT = (-0.5164228, -2.737418, 16.07497, -38.87607, 39.49944, -14.17718)  # of u^2 .. u^7, Bouchiat et al. 1999
 _STARTS = (0.2e-9, 0.5e-9, 2e-9, 10e-9, 50e-9)  # m, persistence or Kuhn length
+_USUAL = {"worm-like": 0.4e-9, "freely-jointed": 0.8e-9}  # m, of unfolded proteins
+_SURELY = 3.0  # standard deviations
 _FEWEST = 12  # points
 _FEW = 100  # points of a first fit
 _HALVINGS = 36
@@ -84,7 +86,7 @@ def chains(
     report: CurveReport,
     model: ChainModel = "worm-like",
     *,
-    segment_length: float | None = None,
+    segment_length: float | Literal["free"] | None = None,
     temperature: float = 298.15,
 ) -> tuple[Chain, ...]:
     """Contour length of what each rupture ended, by fitting a chain's law to the pull before it.
@@ -97,8 +99,9 @@ def chains(
         Of :func:`analyse`.
     model : {"worm-like", "freely-jointed"}
         Marko and Siggia's chain in the form of Bouchiat et al.; or Kuhn's.
-    segment_length : float, optional
-        Persistence or Kuhn length [m], held; fitted if not given.
+    segment_length : float or "free", optional
+        Persistence or Kuhn length [m], held; 0.4 nm (worm-like) or 0.8 nm, of unfolded proteins, if not given. "free":
+        fitted, which one pull seldom determines beside the contour length. DNA of two strands has some 50 nm.
     temperature : float
         [K], 77 .. 1000; room temperature is 298, not 25.
 
@@ -106,13 +109,18 @@ def chains(
     -------
     tuple of Chain
         One for each of ``report.ruptures``. The chain is taken to begin where the undeformed bodies touch: on a stiff
-        sample where the lines of contact and free lever meet, else the contact point of the report.
+        sample where the lines of contact and free lever meet, else the contact point of the report. Lengths never fall
+        within a pull, as what tore off cannot tear off again: one that surely does is NaN, and one that may not is as
+        long as that before it.
     """
     laws = {"worm-like": _worm_like_force, "freely-jointed": _freely_jointed_force}
     if model not in laws:
         raise InvalidValue(f"model {model!r}: valid are {', '.join(laws)}")
-    if segment_length is not None and not _SHORTEST <= segment_length <= _LONGEST:
-        raise InvalidValue(f"segment_length: {segment_length:g} m, valid is {_SHORTEST:g} to {_LONGEST:g} m")
+    if segment_length is None:
+        segment_length = _USUAL[model]
+    held = None if segment_length == "free" else float(segment_length)
+    if held is not None and not _SHORTEST <= held <= _LONGEST:
+        raise InvalidValue(f"segment_length: {held:g} m, valid is {_SHORTEST:g} to {_LONGEST:g} m")
     check_temperature(temperature)
     stiffness, retract = curve.spring_constant, report.branches.get("retract")
     if stiffness is None:
@@ -123,9 +131,31 @@ def chains(
     found, after = [], contact[0]
     for rupture in report.ruptures:
         pull = _Pull.of(retract, after, rupture, contact, BOLTZMANN * temperature, stiffness)
-        found.append(_chain(rupture, pull, laws[model], segment_length))
+        found.append(_chain(rupture, pull, laws[model], held))
         after = rupture.z
-    return tuple(found)
+    return _growing(found)
+
+
+def _growing(found: list[Chain]) -> tuple[Chain, ...]:
+    """With lengths that do not fall from one rupture to the next."""
+    made: list[Chain] = []
+    longest = longest_sigma = 0.0
+    for chain in found:
+        short = longest - chain.contour_length
+        if short > _SURELY * np.hypot(longest_sigma, chain.contour_length_sigma):
+            nothing = dict.fromkeys(("contour_length", "contour_length_sigma", "segment_length",
+                                     "segment_length_sigma"), np.nan)  # fmt: skip
+            made.append(replace(chain, **nothing))
+            continue
+        if short > 0.0:
+            sigma = float(np.hypot(chain.contour_length_sigma, short))
+            kept = replace(chain, contour_length=longest, contour_length_sigma=sigma)
+        else:
+            kept = chain
+        if kept.contour_length > longest:
+            longest, longest_sigma = kept.contour_length, kept.contour_length_sigma
+        made.append(kept)
+    return tuple(made)
 
 
 def _contact(report: CurveReport, retract: Branch, stiffness: float) -> tuple[float, float]:
