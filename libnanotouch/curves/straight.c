@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A line through a bow, a step or contact leaves more than noise in the means of its parts. At the near end of the free
- * part, level and tilt together are then known to twice that: what a parabola leaves there is 2.2 times its RMS. */
+ * part, level and tilt together are then known to three times that: what a parabola leaves there is 2.2 times its RMS,
+ * and more in contact. */
 #include "curves/straight.h"
 
 #include <math.h>
@@ -46,7 +47,7 @@ static int doubt(const parts *p, nt_curve_baseline *baseline)
     if (square < no_noise * p->variance)
         return 0;
     baseline->force_variance += square;
-    baseline->slope_variance += 3.0 * square / (p->half * p->half);
+    baseline->slope_variance += 9.0 * square / (p->half * p->half);
     return 1;
 }
 
