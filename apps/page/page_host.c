@@ -77,7 +77,7 @@ PAGE_API(page_host_follow) void page_host_follow(double elapsed)
 PAGE_API(page_host_ask) int page_host_ask(const char *what, const char *text, const double values[3])
 {
     const nt_host_asked asked = {what, text, {values[0], values[1], values[2]}};
-    return nt_host_ask(host, &asked) != NT_E_UNSUPPORTED;
+    return nt_host_ask(the_host(), &asked) != NT_E_UNSUPPORTED;
 }
 
 PAGE_API(page_host_refuse) void page_host_refuse(const char *why)
@@ -90,7 +90,7 @@ static char text[NT_HOST_MESSAGE];
 
 PAGE_API(page_host_tell) const char *page_host_tell(void)
 {
-    return nt_host_tell(host, text, sizeof text) > 0 ? text : NULL;
+    return nt_host_tell(the_host(), text, sizeof text) > 0 ? text : NULL;
 }
 
 PAGE_API(page_host_result) const char *page_host_result(int begin)
@@ -103,18 +103,18 @@ PAGE_API(page_host_result) const char *page_host_result(int begin)
 /* A preset that a task waits for, a field that another session is needed for; NULL: none. */
 PAGE_API(page_host_wants) const char *page_host_wants(void)
 {
-    return nt_host_wants(host);
+    return nt_host_wants(the_host());
 }
 
 PAGE_API(page_host_reopens) const char *page_host_reopens(void)
 {
-    const nt_host_change *change = nt_host_reopens(host);
+    const nt_host_change *change = nt_host_reopens(the_host());
     return change ? change->field : NULL;
 }
 
 PAGE_API(page_host_reopens_to) double page_host_reopens_to(void)
 {
-    const nt_host_change *change = nt_host_reopens(host);
+    const nt_host_change *change = nt_host_reopens(the_host());
     return change ? change->after : 0.0;
 }
 

@@ -245,6 +245,20 @@ static int is_meant(const nt_session_host *host)
     return 1;
 }
 
+static nt_status refuse_task(nt_session_host *host, const char *name)
+{
+    char asked[41], names[NT_HOST_LINE];
+    nt_text text = nt_text_in(asked, sizeof asked);
+    nt_text_add(&text, name);
+    text = nt_text_in(names, sizeof names);
+    for (int i = 0; nt_host_tasks(i); ++i) {
+        nt_text_add(&text, i ? ", " : "");
+        nt_text_add(&text, nt_host_tasks(i)->name);
+    }
+    return nt_host_refuse_filled(host, "task {name}: valid are {names}",
+                                 (const nt_figure[]){{"name", 0.0, NULL, asked}, {"names", 0.0, NULL, names}, {0}});
+}
+
 /* A task: its name, whether its sample is laid for it, and a seed of what it draws. "": none. */
 nt_status nt_host_ask_task(nt_session_host *host, const nt_host_asked *asked)
 {
@@ -254,8 +268,7 @@ nt_status nt_host_ask_task(nt_session_host *host, const nt_host_asked *asked)
     if (!asked->text[0])
         return NT_OK;
     if (!task)
-        return nt_host_refuse_filled(host, "task {name}: there is none; see the list of tasks",
-                                     (const nt_figure[]){{"name", 0.0, NULL, asked->text}, {0}});
+        return refuse_task(host, asked->text);
     const int lacks = task->about.pushed != NT_HOST_NOTHING && task->about.pushed != host->pushed;
     if (lacks || (asked->value[0] != 0.0 && (strcmp(host->name, task->about.preset) != 0 || !is_meant(host)))) {
         copy(host->wants, sizeof host->wants, task->about.preset);
@@ -316,6 +329,8 @@ static nt_status ask_world(nt_session_host *host, const nt_host_asked *asked)
 nt_status nt_host_ask(nt_session_host *host, const nt_host_asked *asked)
 {
     const char *what = asked->what;
+    if (!host->session)
+        return nt_host_refuse_filled(host, "nothing is touched yet: lay a sample first", NULL);
     if (!strcmp(what, "move") || !strcmp(what, "wheel") || !strcmp(what, "press") || !strcmp(what, "retract"))
         return ask_hand(host, asked);
     if (!strcmp(what, "change") || !strcmp(what, "undo") || !strcmp(what, "redo"))

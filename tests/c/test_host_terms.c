@@ -114,6 +114,22 @@ static void test_words_are_as_people_write_them(void **state)
     assert_string_equal(text, "{\"a\\\"\":\"b\\\\\\n\",\"c\":null}");
 }
 
+static void test_without_a_session_everything_is_refused_in_words(void **state)
+{
+    (void)state;
+    static const char *const asked[] = {"move", "wheel", "press", "change", "undo", "task", "choose", "say", "report"};
+    nt_session_host *host = nt_host_init(test_malloc(nt_host_size()));
+    char text[NT_HOST_LINE];
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; ++i) {
+        assert_int_equal(nt_host_ask(host, &(nt_host_asked){asked[i], "x", {0.0, 0.0, 0.0}}), NT_E_STATE);
+        assert_true(nt_host_tell(host, text, sizeof text) > 0);
+        assert_string_equal(text, "{\"tell\":\"refused\",\"why\":\"nothing is touched yet: lay a sample first\"}");
+        assert_int_equal(nt_host_tell(host, text, sizeof text), 0);
+    }
+    assert_int_equal(nt_host_solve(host, NULL), NT_E_STATE);
+    test_free(host);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -122,6 +138,7 @@ int main(void)
         cmocka_unit_test(test_a_staircase_settles_where_seven_of_ten_are_right),
         cmocka_unit_test(test_a_staircase_ends_for_the_perfect_and_for_the_blind),
         cmocka_unit_test(test_words_are_as_people_write_them),
+        cmocka_unit_test(test_without_a_session_everything_is_refused_in_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -127,8 +127,9 @@ export class Host {
     for (let at = core.c.page_host_tell(); at; at = core.c.page_host_tell()) {
       const message = JSON.parse(core.text(at));
       if (message.tell === "world") {
-        core.c.page_changed();
-        this.scene = message.scene;
+        const key = JSON.stringify([message.scene, message.settings]);
+        if (key !== this.key) core.c.page_changed(); // a snapshot belongs to the world that it was taken in
+        Object.assign(this, { key, scene: message.scene });
         message.changes = ++this.changes;
         this.world = message;
       }
