@@ -222,19 +222,6 @@ void page_section(const double pose[2], const double *r, nt_view_profile *rows, 
     found[2] = contact.attached;
 }
 
-/* Force, stiffness and radius along a path of gaps, starting apart or in contact: rows of three. */
-PAGE_API(page_law) void page_law(const double *gaps, double *rows, int count, int attached)
-{
-    nt_interaction_state state = {.attached = attached};
-    for (int i = 0; i < count; ++i) {
-        nt_interaction_advance_gap(&world.plan, &state, NULL, gaps[i]);
-        const nt_law_value law = nt_interaction_eval_gap(&world.plan, &state, NULL, gaps[i]);
-        rows[3 * i] = law.F;
-        rows[3 * i + 1] = law.k;
-        rows[3 * i + 2] = law.a;
-    }
-}
-
 /* --- built-in samples --- */
 
 PAGE_API(page_dots) int page_dots(double *heights, int pixels, double size)

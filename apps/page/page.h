@@ -82,7 +82,6 @@ const char *page_warning(int number);
 double page_cutoff_gap(double force);
 int page_curve(int part, double nearest, double farthest, nt_view_point *rows, int count);
 void page_section(const double pose[2], const double *r, nt_view_profile *rows, int count, double found[3]);
-void page_law(const double *gaps, double *rows, int count, int attached);
 int page_dots(double *heights, int pixels, double size);
 
 /* page_session.c */

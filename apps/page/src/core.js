@@ -174,16 +174,6 @@ export class Core {
     });
   }
 
-  // Force, stiffness, contact radius along a path of gaps.
-  law(gaps, attached) {
-    return this.withDoubles(4 * gaps.length, gaps, (at) => {
-      this.c.page_law(at, at + 8 * gaps.length, gaps.length, attached ? 1 : 0);
-      const rows = this.doubles(at + 8 * gaps.length, 3 * gaps.length);
-      const take = (part) => Array.from(gaps, (_, i) => rows[3 * i + part]);
-      return { F: take(0), k: take(1), a: take(2) };
-    });
-  }
-
   // --- a curve that was measured ---
 
   readCurve(z, force, approach, retract, springConstant) {

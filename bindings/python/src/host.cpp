@@ -99,10 +99,6 @@ static void bind_sliders(py::module_ &module)
         char text[NT_HOST_LINE];
         return std::string(nt_host_facts(frame.data(), &bounds, text, sizeof text));
     });
-    module.def("host_digits", [](double value, const std::string &unit, int count) {
-        char text[NT_HOST_LINE];
-        return std::string(nt_host_digits(value, unit.c_str(), count, text, sizeof text));
-    });
 }
 
 static void lay(LiveHost &self, const py::dict &about)

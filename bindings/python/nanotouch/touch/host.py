@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from nanotouch._core import HostSlider as Slider
 from nanotouch._core import LiveHost, Proxy
-from nanotouch._core import host_digits as digits
 from nanotouch._core import host_facts as facts
 from nanotouch._core import host_presets as presets
 from nanotouch._core import host_slider_fields as slider_fields
@@ -16,5 +15,5 @@ from nanotouch._core import proxy_glide as GLIDE
 from nanotouch._core import proxy_load as LOAD
 
 __all__ = [
-    "GLIDE", "LOAD", "LiveHost", "Proxy", "Slider", "digits", "facts", "presets", "slider_fields", "sliders", "tasks",
+    "GLIDE", "LOAD", "LiveHost", "Proxy", "Slider", "facts", "presets", "slider_fields", "sliders", "tasks",
 ]  # fmt: skip
