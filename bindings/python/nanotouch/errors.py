@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import importlib
+import sys
+import warnings
 from types import ModuleType
 
 from nanotouch.extras import ADDS, advice
@@ -48,9 +50,15 @@ class MissingExtra(Error, ImportError):
 
 
 def require(module: str, extra: str) -> ModuleType:
-    """Import an optional module, or raise :class:`MissingExtra` naming the extra that brings it."""
+    """Import an optional module, or raise :class:`MissingExtra` naming the extra that brings it. What it says while it
+    loads, such as that it goes without MPI, is no warning about the user's data."""
+    loaded = sys.modules.get(module)
+    if loaded is not None:
+        return loaded
     try:
-        return importlib.import_module(module)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return importlib.import_module(module)
     except ImportError as error:
         raise missing(module, extra) from error
 
