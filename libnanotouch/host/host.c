@@ -220,7 +220,8 @@ static nt_status ask_hand(nt_session_host *host, const nt_host_asked *asked)
     const int lifts = !strcmp(asked->what, "retract") || (!strcmp(asked->what, "press") && asked->value[0] == 0.0);
     if (!lifts && nt_trainer_locks(host))
         return nt_host_refuse_filled(host, "first say what you expect; then you may touch", NULL);
-    host->hand.presses = !lifts && !strcmp(asked->what, "press");
+    if (lifts || !strcmp(asked->what, "press")) /* a move goes on pressing */
+        host->hand.presses = !lifts;
     if (!host->has_frame)
         return NT_OK;
     if (!strcmp(asked->what, "move"))

@@ -355,3 +355,14 @@ def test_a_caption_of_a_film_is_no_progress() -> None:
     seen = Seen()
     seen.notes.append((time.monotonic() + 1e6, "the water holds ...", False))
     assert readings._lower(LIGHT, seen, "")[0] == "the water holds ..."
+
+
+def test_a_move_goes_on_pressing_and_the_wheel_does_not() -> None:
+    host = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True)
+    host.advance(0.01)
+    host.answer({"do": "press", "on": True})
+    host.answer({"do": "move", "way": (1e-9, 0.0, 0.0)})
+    assert host.core.state["presses"]
+    host.answer({"do": "wheel", "steps": 1.0})
+    assert not host.core.state["presses"]
+    host.close()

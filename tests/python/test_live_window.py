@@ -97,7 +97,7 @@ def _recorded(path: Path, desk: Desk | None) -> Any:
     """A scripted touch of a stepped session, with a window that watches it or without."""
     host = Host(of_preset("silicon_in_air"), lambda message: None, out=str(path), stepped=True)
     if desk is not None:
-        host.report()
+        desk.tell(host.world())
     host.advance(0.1)
     for request, duration in (({"do": "press", "on": True}, 0.8), ({"do": "wheel", "steps": -4.0}, 0.2),
                               ({"do": "press", "on": False}, 0.5)):  # fmt: skip
