@@ -24,12 +24,12 @@ HEADERS = [
     "rig",
     "settings",
     "scaling",
-    "passivity",
-    "stage_loop",
+    "advanced/passivity",
+    "advanced/stage_loop",
     "servo",
     "supervisor",
     "touch",
-    "force_table",
+    "advanced/force_table",
 ]
 PRIVATE = ["follow", "lift", "modes", "motor", "observe", "sideways", "stuck"]
 SOURCES = [
@@ -357,7 +357,7 @@ def write_tests(folder: Path, sources: list[str]) -> None:
     for source in map(Path, sources):
         fixture = source.with_name("supervisor_fixture.h").read_text()
         text = single(source.read_text().replace('#include "supervisor_fixture.h"\n', fixture))
-        text = re.sub(r'#include "nanotouch/\w+\.h"', '#include "single_made.h"', text)
+        text = re.sub(r'#include "(?:nanotouch|core)/[\w/]+\.h"', '#include "single_made.h"', text)
         (folder / f"{source.stem}_single.c").write_text(text)
 
 

@@ -3,8 +3,8 @@
  * Build: cc 03_fit.c $(pkg-config --cflags --libs nanotouch-fit) */
 #include <stdio.h>
 
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/fit.h"
-#include "nanotouch/random.h"
 
 enum { POINTS = 500 };
 

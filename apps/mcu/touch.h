@@ -4,8 +4,8 @@
 #ifndef APPS_MCU_TOUCH_H
 #define APPS_MCU_TOUCH_H
 
+#include "nanotouch/advanced/converters.h"
 #include "nanotouch/control.h"
-#include "nanotouch/converters.h"
 #include "nanotouch/hal.h"
 
 /* What the board gives: its SPI, its clock, and the end of a period. */

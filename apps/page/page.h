@@ -7,6 +7,7 @@
 
 #include <stdint.h>
 
+#include "nanotouch/advanced/view.h"
 #include "nanotouch/nanotouch.h"
 
 #if defined(__wasm__)

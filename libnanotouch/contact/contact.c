@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/material.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_contact, path, __VA_ARGS__)

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
+#include "nanotouch/advanced/geometry.h"
 #include "nanotouch/contact.h"
-#include "nanotouch/geometry.h"
 
 static inline nt_law_value nt_hertz_law(double radius, double effective_modulus, double indentation)
 {

@@ -12,10 +12,11 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "contact/contact_equilibrium.h"
 #include "contact/maugis/apart.h"
 #include "contact/maugis/solve.h"
 #include "core/roots.h"
-#include "nanotouch/contact_equilibrium.h"
+#include "nanotouch/advanced/contact_equilibrium.h"
 
 /* G = stage d + load P. */
 typedef struct {

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "core/same_bits.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 
 double nt_effective_radius(double radius, double other_radius)
 {

@@ -3,7 +3,7 @@
  * Where each range comes from is in docs/geometry.md; erratum E13 is a case that it finds. */
 #include <math.h>
 
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 
 #define TABOR 0.2 /* representative strain over slope of the surface at the edge (Tabor 1951; Johnson 1985, Ch. 6) */
 /* The same strain for the same mean pressure under a punch: sphere p/E* = 4 a/(3 pi R), punch p/E* = 2 delta/(pi a). */

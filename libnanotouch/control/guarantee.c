@@ -6,6 +6,9 @@
 #include <math.h>
 
 #include "control/bound.h"
+#include "control/margins.h"
+#include "control/servo.h"
+#include "core/rig.h"
 #include "core/same_bits.h"
 #include "nanotouch/guarantee.h"
 #include "nanotouch/margins.h"

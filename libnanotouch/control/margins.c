@@ -8,7 +8,9 @@
 #include <math.h>
 
 #include "control/known_law.h"
+#include "control/margins.h"
 #include "control/sampled.h"
+#include "core/rig.h"
 #include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"

@@ -9,6 +9,7 @@
 #include <math.h>
 
 #include "control/known_law.h"
+#include "control/margins.h"
 #include "control/sampled.h"
 #include "core/same_bits.h"
 #include "nanotouch/margins.h"

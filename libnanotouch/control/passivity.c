@@ -11,7 +11,7 @@
 #include <math.h>
 
 #include "core/clamp.h"
-#include "nanotouch/passivity.h"
+#include "nanotouch/advanced/passivity.h"
 
 #define BACK_OFF 0.8
 #define LEAST_GAIN 0.05  /* below it damping is added */

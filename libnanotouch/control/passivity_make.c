@@ -3,8 +3,8 @@
 #include <math.h>
 
 #include "core/clamp.h"
+#include "nanotouch/advanced/passivity.h"
 #include "nanotouch/material.h"
-#include "nanotouch/passivity.h"
 
 #define DUE_SHARE 0.2         /* of the damping; at the margin of 1.5 at which a loop may be armed a third is left */
 #define SPEED_BANDWIDTH 200.0 /* of the speed in b v^2 [Hz] */

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Before arming: two halves of a tare, whose means give bias and drift; then the stage draws back, is read, and comes
  * back. Drawing back is the safe direction: it needs neither model nor sensor. */
-#include "nanotouch/preflight.h"
+#include "nanotouch/advanced/preflight.h"
 
 #include <math.h>
 
+#include "control/preflight.h"
 #include "core/clamp.h"
 #include "core/problem.h"
+#include "core/rig.h"
 #include "nanotouch/material.h"
 
 #define TARE_HALF 0.05     /* [s] */

@@ -6,8 +6,8 @@
 
 #include "core/complex_number.h"
 #include "core/lti.h"
+#include "nanotouch/advanced/stage_loop.h"
 #include "nanotouch/settings.h"
-#include "nanotouch/stage_loop.h"
 
 /* M x'' + B x' + K x = u behind a hold and a dead time. States (x, v T), so that the entries are of like size. */
 typedef struct nt_sampled {

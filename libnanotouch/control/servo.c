@@ -4,9 +4,10 @@
 
 #include <math.h>
 
+#include "control/servo.h"
 #include "core/clamp.h"
+#include "nanotouch/advanced/stage_loop.h"
 #include "nanotouch/material.h"
-#include "nanotouch/stage_loop.h"
 
 /* alpha_f alpha_p k_eff: the contact, through the lever, at the operator's scale [N/m]. */
 static double reflected_stiffness(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)

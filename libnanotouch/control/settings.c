@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/rig.h"
 #include "nanotouch/material.h"
 #include "nanotouch/scaling.h"
 #include "nanotouch/settings.h"

@@ -2,8 +2,8 @@
  * Notch and gain of the stage's loop. */
 #include <math.h>
 
+#include "nanotouch/advanced/stage_loop.h"
 #include "nanotouch/material.h"
-#include "nanotouch/stage_loop.h"
 
 /* z^2 - sum z + product: the poles of s^2 + 2 zeta wn s + wn^2 under a hold, z = exp(s T); angle = wn T. */
 typedef struct pole_pair {

@@ -4,6 +4,7 @@
 
 #include "control/sampled.h"
 #include "core/clamp.h"
+#include "core/rig.h"
 #include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"

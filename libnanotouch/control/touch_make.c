@@ -8,9 +8,10 @@
 #include "control/sampled.h"
 #include "core/clamp.h"
 #include "core/problem.h"
+#include "core/rig.h"
 #include "core/same_bits.h"
+#include "nanotouch/advanced/motor_bound.h"
 #include "nanotouch/material.h"
-#include "nanotouch/motor_bound.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */
 #define SPIKE_SIGMA 12.0     /* a reading may jump by this much noise and four times what stage and path can go */

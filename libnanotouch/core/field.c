@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Tables of fields: see field.h. */
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_CORE_NOISE_H
 #define NANOTOUCH_CORE_NOISE_H
 
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 
 static inline void noise_seek(nt_noise *noise, uint64_t tick)
 {

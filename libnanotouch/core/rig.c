@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/rig.h"
 #include "core/same_bits.h"
 #include "nanotouch/material.h"
 

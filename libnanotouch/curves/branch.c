@@ -5,6 +5,7 @@
 
 #include "core/same_bits.h"
 #include "core/variants.h"
+#include "curves/curves.h"
 #include "curves/parts.h"
 #include "curves/robust.h"
 

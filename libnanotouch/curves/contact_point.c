@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/same_bits.h"
+#include "curves/curves.h"
 #include "curves/parts.h"
 #include "curves/robust.h"
 

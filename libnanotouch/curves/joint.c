@@ -8,6 +8,7 @@
 
 #include "core/same_bits.h"
 #include "curves/bend.h"
+#include "curves/curves.h"
 #include "curves/film.h"
 #include "curves/line.h"
 #include "curves/parts.h"

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/rig.h"
 #include "nanotouch/material.h"
 #include "oscillator.h"
 

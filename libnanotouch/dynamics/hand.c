@@ -4,6 +4,7 @@
  * the master: master.c). */
 #include <math.h>
 
+#include "dynamics/dynamics.h"
 #include "nanotouch/dynamics.h"
 
 void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target)

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "dynamics/dynamics.h"
 #include "oscillator.h"
 
 enum { TURNS_MAX = 64 }; /* of a swinging arm within one period */

@@ -13,6 +13,7 @@
 #include <stddef.h>
 
 #include "core/clamp.h"
+#include "dynamics/dynamics.h"
 #include "nanotouch/material.h"
 #include "oscillator.h"
 

@@ -8,7 +8,7 @@
 
 #include "core/problem.h"
 #include "fit/models/row.h"
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 
 namespace
 {

@@ -11,8 +11,9 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "forces/forces.h"
 #include "forces/law.h"
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 

@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "forces/law.h"
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 

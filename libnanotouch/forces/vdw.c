@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "forces/law.h"
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/forces.h"
 
 #define FIELD(member, ...) NT_FIELD(nt_vdw, member, __VA_ARGS__)

@@ -4,8 +4,9 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "forces/forces.h"
 #include "forces/law.h"
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/forces.h"
 
 #define FIELD(member, ...) NT_FIELD(nt_vdw_tip, member, __VA_ARGS__)

@@ -8,6 +8,7 @@
 #include "core/axes.h"
 #include "core/problem.h"
 #include "hal/capabilities.h"
+#include "hal/hal.h"
 #include "hal/reading.h"
 
 #define ALL_CHANNELS ((1u << NT_READS) - 1u)

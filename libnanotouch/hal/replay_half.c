@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "nanotouch/hal_replay.h"
+#include "nanotouch/advanced/hal_replay.h"
 
 #include <math.h>
 #include <stddef.h>

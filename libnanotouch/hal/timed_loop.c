@@ -4,8 +4,9 @@
 #include <stddef.h>
 
 #include "hal/clock.h"
+#include "hal/timing.h"
+#include "nanotouch/advanced/timing.h"
 #include "nanotouch/hal.h"
-#include "nanotouch/timing.h"
 
 typedef struct timed {
     const nt_loop_phases *phases;

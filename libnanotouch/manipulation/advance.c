@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "manipulation/bristle.h"
+#include "manipulation/particles.h"
 #include "manipulation/set.h"
 #include "manipulation/vector.h"
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/problem.h"
+#include "manipulation/particle.h"
 #include "manipulation/set.h"
 #include "nanotouch/material.h"
 

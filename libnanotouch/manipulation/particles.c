@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A set of particles as it is described, its contacts made ready, and laid on the substrate: see particles.h. */
-#include "nanotouch/particles.h"
+#include "nanotouch/advanced/particles.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -8,6 +8,8 @@
 
 #include "core/problem.h"
 #include "manipulation/bristle.h"
+#include "manipulation/particle.h"
+#include "manipulation/particles.h"
 #include "manipulation/set.h"
 #include "nanotouch/material.h"
 

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Spheres and rods behind one interface: see pushed.h. */
-#include "nanotouch/pushed.h"
+#include "nanotouch/advanced/pushed.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
+#include "manipulation/particles.h"
+#include "manipulation/pushed.h"
+#include "manipulation/rod.h"
 #include "manipulation/rod_step.h"
 #include "manipulation/set.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A rod that a tip pushes: see rod.h. What it is like, where it lies, and its way, step by step. */
-#include "nanotouch/rod.h"
+#include "nanotouch/advanced/rod.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -8,6 +8,7 @@
 
 #include "core/problem.h"
 #include "core/same_bits.h"
+#include "manipulation/rod.h"
 #include "manipulation/rod_step.h"
 #include "nanotouch/material.h"
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "manipulation/balance.h"
+#include "manipulation/rod.h"
 
 enum { ROUNDS = 3000, TRIES = 40 };
 #define EXACT 1e-8   /* of all forces: how closely they balance */

@@ -5,12 +5,13 @@
  * of the tip takes ds/a of what is left, up to the share of the depth that is plastic. At a given load c F_0 = P: in
  * full plasticity F_0 = 2 P, a^2 = 2 P/(pi H), the groove of a ploughing tip. Stored energy and heat of the law at rest
  * count with c, so that a way in depth has stored + dissipated = work; as c falls, U falls at the same depth: heat. */
-#include "nanotouch/dents.h"
+#include "nanotouch/advanced/dents.h"
 
 #include <math.h>
 
 #include "core/same_bits.h"
 #include "nanotouch/material.h"
+#include "plasticity/dents.h"
 
 #define GROWN 1e-3  /* a dent is another one if it is so much wider */
 #define GROOVE 0.25 /* a groove is longer than this many of its radii */

@@ -6,8 +6,8 @@
 
 #include "core/problem.h"
 #include "core/same_bits.h"
+#include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/material.h"
-#include "nanotouch/plasticity.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_displacement, path, __VA_ARGS__)
 

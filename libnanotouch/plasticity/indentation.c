@@ -13,8 +13,8 @@
 #include <stddef.h>
 
 #include "core/same_bits.h"
+#include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/material.h"
-#include "nanotouch/plasticity.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_indentation, path, __VA_ARGS__)
 

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/material.h"
-#include "nanotouch/plasticity.h"
 
 #include "core/problem.h"
 

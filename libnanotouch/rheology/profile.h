@@ -4,7 +4,7 @@
 #define NANOTOUCH_RHEOLOGY_PROFILE_H
 
 #include "contact/bonded_layer.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 
 typedef struct nt_profile {
     nt_shape_kind kind;

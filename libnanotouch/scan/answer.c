@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 #include "core/same_bits.h"
+#include "scan/flow.h"
 
 #define OUTSIDE 20e-9 /* gap where the way begins [m] */
 #define FINE 0.02e-9  /* step of the way near the surface [m] */

@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_SCAN_ANSWER_H
 #define NANOTOUCH_SCAN_ANSWER_H
 
-#include "nanotouch/scan.h"
+#include "nanotouch/advanced/scan.h"
 
 /* Of a lever over a plan's flat, at the loop's set point; phase feedback has the repelled one alone. */
 void nt_tap_answers(const nt_tapping *lever, const nt_plan *plan, const nt_zloop *zloop,

@@ -2,7 +2,7 @@
  * One motion of a tapping lever for a target, by Newton's method in the plane of swing and depth; what the harmonics
  * that are left out would change; whether it stays. All motions: curve.c. Which of them a lever comes to: branches.c.
  */
-#include "nanotouch/balance.h"
+#include "nanotouch/advanced/balance.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -10,6 +10,7 @@
 #include "core/same_bits.h"
 #include "motion.h"
 #include "nanotouch/material.h"
+#include "scan/balance.h"
 #include "scene/parts.h"
 
 #define PROBE 1e-5    /* of the finite differences, over A0 */

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "motion.h"
+#include "scan/balance.h"
 
 #define CUT 1e-12 /* in the depth [m] */
 #define NEAR 0.02 /* in the swing, over it */

@@ -5,8 +5,8 @@
 
 #include "core/problem.h"
 #include "core/same_bits.h"
+#include "nanotouch/advanced/tapping.h"
 #include "nanotouch/material.h"
-#include "nanotouch/tapping.h"
 
 #define FIELD(path, ...) NT_FIELD(struct described, path, __VA_ARGS__)
 #define RATIO_MIN 0.1 /* farther from the resonance one mode of the lever is not what answers */

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "nanotouch/tapping.h"
+#include "nanotouch/advanced/tapping.h"
 #include "scene/parts.h"
 
 #define NEAREST 0.25e-9 /* thickness of the first shell of forces that fall with the gap [m] */

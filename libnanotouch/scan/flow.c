@@ -13,8 +13,9 @@
 
 #include "core/same_bits.h"
 #include "edges.h"
-#include "nanotouch/flow.h"
+#include "nanotouch/advanced/flow.h"
 #include "nanotouch/material.h"
+#include "scan/flow.h"
 #include "scene/parts.h"
 
 #define SETTLED 1e-9  /* change per radian over A0 and 1/Q */

@@ -10,6 +10,7 @@
 #include "answer.h"
 #include "core/same_bits.h"
 #include "nanotouch/material.h"
+#include "scan/flow.h"
 
 #define SHARE 0.01  /* of a step along the circle */
 #define FINEST 0.05 /* of a step, over the width of the stage's resonance */

@@ -6,7 +6,7 @@
 
 #include "core/complex_number.h"
 #include "core/lti.h"
-#include "nanotouch/scan.h"
+#include "nanotouch/advanced/scan.h"
 
 /* From the height of the base, held over a tick, to the reading of the lever; order 0: at once. */
 typedef struct nt_loop_answer {

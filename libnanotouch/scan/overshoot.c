@@ -11,8 +11,9 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "nanotouch/advanced/scan.h"
 #include "nanotouch/material.h"
-#include "nanotouch/scan.h"
+#include "scan/flow.h"
 
 #define OUTSIDE 20e-9 /* gap where the way begins: repulsion farther out is weak [m] */
 #define FINE 0.02e-9  /* step of the way near the surface [m] */

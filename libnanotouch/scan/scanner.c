@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * One tick after the other: the place, the lever there, the reading, the loop, the stage. */
-#include "nanotouch/scan.h"
+#include "nanotouch/advanced/scan.h"
 
 #include <math.h>
 #include <stddef.h>
 
 #include "answer.h"
 #include "core/problem.h"
+#include "dynamics/dynamics.h"
 #include "nanotouch/material.h"
+#include "scan/flow.h"
+#include "scan/scan.h"
+#include "scene/interaction.h"
 
 #define CLEARANCE 2e-9 /* above first touch where a scan begins to come down [m] */
 #define ENGAGE 12.0    /* time constants of the loop until it holds */

@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "core/same_bits.h"
-#include "nanotouch/tapping.h"
+#include "nanotouch/advanced/tapping.h"
 
 #define NEAR 3e-4    /* change in one period, over A0, from which Newton's method may try */
 #define REACH 0.1    /* what it may move the state by, over A0 */

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Which tier of tapping a demand needs, and lines of an image by it. */
-#include "nanotouch/steady.h"
+#include "nanotouch/advanced/steady.h"
 
 #include <math.h>
 #include <stddef.h>
 
 #include "motion.h"
+#include "scan/balance.h"
+#include "scan/scan.h"
 
 #define ACCURACY_MIN 1e-6
 #define ACCURACY_MAX 0.5

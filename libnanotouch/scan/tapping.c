@@ -4,7 +4,7 @@
  * A step ends at the lowest point of the tip, so that no tap, however short, falls between the stages. Where the force
  * jumps (a meniscus forms or breaks) the steps shrink until the tip crosses within the tolerance. All means and works
  * are integrals over the same stages with the same weights, of order 8 as the motion itself. */
-#include "nanotouch/tapping.h"
+#include "nanotouch/advanced/tapping.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -6,8 +6,8 @@
 
 #include "core/problem.h"
 #include "loop.h"
+#include "nanotouch/advanced/scan.h"
 #include "nanotouch/material.h"
-#include "nanotouch/scan.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_scan, path, __VA_ARGS__)
 #define GAIN_MARGIN 2.0

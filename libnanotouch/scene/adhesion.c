@@ -4,6 +4,7 @@
 
 #include "nanotouch/forces.h"
 #include "nanotouch/scene.h"
+#include "scene/scene.h"
 #include "scene/terms/term.h"
 
 nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene)

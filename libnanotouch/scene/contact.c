@@ -7,7 +7,9 @@
 #include <stddef.h>
 
 #include "contact/hertz.h"
+#include "contact/maugis_table.h"
 #include "scene/parts.h"
+#include "scene/scene.h"
 
 static int is_jkr_shape(const nt_plan *plan)
 {

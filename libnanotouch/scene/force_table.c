@@ -2,7 +2,7 @@
  * The force of a plan from a table of cubics, in single precision. */
 #include <math.h>
 
-#include "nanotouch/force_table.h"
+#include "nanotouch/advanced/force_table.h"
 
 /* The last piece that begins at or below a gap; of what lies before all of them the first. */
 static const nt_force_piece *piece_at(const nt_force_piece *pieces, int count, float gap)

@@ -8,7 +8,7 @@
 #include <math.h>
 
 #include "core/problem.h"
-#include "nanotouch/force_table.h"
+#include "nanotouch/advanced/force_table.h"
 #include "scene/parts.h"
 
 #define SHARE 0.1       /* of the demand that the table may err by */

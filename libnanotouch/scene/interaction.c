@@ -9,6 +9,7 @@
 
 #include "nanotouch/interaction.h"
 #include "scene/deformation/deform.h"
+#include "scene/interaction.h"
 #include "scene/terms/term.h"
 
 static void add(nt_law_value *sum, nt_law_value term)

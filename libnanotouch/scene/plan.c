@@ -5,6 +5,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "contact/geometry.h"
+#include "core/rig.h"
 #include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
 

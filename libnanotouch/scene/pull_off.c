@@ -7,6 +7,7 @@
 
 #include "core/roots.h"
 #include "scene/parts.h"
+#include "scene/scene.h"
 
 #define WORK_MIN 1e-12 /* [J/m^2] */
 #define WORK_MAX 1e2

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/parts.h"
+#include "scene/scene.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_scene, path, __VA_ARGS__)
 #define CHOICE(path, choices, last, doc) FIELD(path, choices, 0.0, last, doc)

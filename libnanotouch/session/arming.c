@@ -2,9 +2,10 @@
  * Before a session is armed: a stage of one's own goes to where the session starts, then the preflight. */
 #include <math.h>
 
+#include "control/preflight.h"
 #include "core/clamp.h"
 #include "core/problem.h"
-#include "nanotouch/preflight.h"
+#include "nanotouch/advanced/preflight.h"
 #include "session/state.h"
 
 #define SETTLES 10.0 /* time constants of lever and lock-in amplifier until the free amplitude is there */

@@ -6,6 +6,7 @@
 
 #include "core/problem.h"
 #include "session/state.h"
+#include "session/terrain.h"
 
 static nt_status compose_mode(const nt_session *session, nt_call *call, nt_problem *problem)
 {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "hal/clock.h"
-#include "nanotouch/observer.h"
+#include "nanotouch/advanced/observer.h"
 #include "session/frames_memory.h"
 
 static const uint64_t one_ticket = (uint64_t)1 << NT_TICKET_BITS;

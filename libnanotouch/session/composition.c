@@ -6,9 +6,12 @@
 #include <string.h>
 
 #include "control/bound.h"
+#include "control/margins.h"
 #include "core/problem.h"
 #include "session/grip.h"
+#include "session/hazard.h"
 #include "session/state.h"
+#include "session/terrain.h"
 
 /* A law of one's own is not tried where the margin is overridden: it may have a memory. */
 nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *settings, nt_mode mode)

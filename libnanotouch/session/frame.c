@@ -9,6 +9,7 @@
 
 #include "nanotouch/material.h"
 #include "scene/parts.h"
+#include "session/frames.h"
 #include "session/state.h"
 
 static int has_zone(const nt_plan *plan)

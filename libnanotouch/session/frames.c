@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "hal/clock.h"
+#include "session/frames.h"
 #include "session/frames_memory.h"
 
 _Static_assert(sizeof(nt_frame) == 184 && sizeof(nt_frame_slot) == 192, "three cache lines");

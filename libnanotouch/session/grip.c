@@ -3,7 +3,8 @@
 #include <math.h>
 
 #include "core/same_bits.h"
-#include "nanotouch/hazard.h"
+#include "nanotouch/advanced/hazard.h"
+#include "scene/interaction.h"
 #include "scene/parts.h"
 #include "session/grip.h"
 #include "session/well.h"

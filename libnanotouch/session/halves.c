@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/problem.h"
+#include "hal/sim/sim.h"
 #include "session/state.h"
 
 #define LOCK_IN_RANGE 4.0      /* over the free amplitude */

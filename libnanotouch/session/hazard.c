@@ -7,18 +7,21 @@
  *
  * Contact stiffens under load. What the lever's base still comes closer by, once the limit is reached, presses by the
  * contact's own law: its stiffness is the mean over that way. */
-#include "nanotouch/hazard.h"
+#include "nanotouch/advanced/hazard.h"
 
 #include <math.h>
 
 #include "control/bound.h"
+#include "control/preflight.h"
+#include "control/servo.h"
 #include "core/same_bits.h"
+#include "nanotouch/advanced/preflight.h"
 #include "nanotouch/material.h"
-#include "nanotouch/preflight.h"
 #include "nanotouch/servo.h"
 #include "nanotouch/supervisor.h"
 #include "scene/parts.h"
 #include "session/grip.h"
+#include "session/hazard.h"
 #include "session/well.h"
 
 #define BOLTZMANN 1.380649e-23

@@ -5,6 +5,7 @@
 
 #include "core/problem.h"
 #include "session/state.h"
+#include "session/terrain.h"
 
 int nt_composition_pushes(const nt_composition *composition)
 {

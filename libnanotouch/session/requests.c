@@ -5,6 +5,8 @@
 #include <math.h>
 
 #include "core/axes.h"
+#include "hal/sim/sim.h"
+#include "plasticity/dents.h"
 #include "session/state.h"
 
 static nt_status push_event(nt_session *session, const nt_event *event)

@@ -2,7 +2,10 @@
  * A session running: one period after another, and what may be read of it. No heap, no lock. */
 #include <math.h>
 
+#include "control/preflight.h"
 #include "core/axes.h"
+#include "hal/hal.h"
+#include "hal/sim/sim.h"
 #include "session/frames_memory.h"
 #include "session/state.h"
 

@@ -3,8 +3,9 @@
 #include <limits.h>
 #include <math.h>
 
-#include "nanotouch/preflight.h"
+#include "nanotouch/advanced/preflight.h"
 
+#include "control/preflight.h"
 #include "core/problem.h"
 #include "session/state.h"
 

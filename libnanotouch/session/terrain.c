@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Makes a terrain: what is needed is checked first, then surface, radii, bank and plan follow from each other. The heap
  * is used in make only. */
-#include "nanotouch/terrain.h"
+#include "nanotouch/advanced/terrain.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -9,6 +9,7 @@
 
 #include "core/problem.h"
 #include "session/state.h"
+#include "session/terrain.h"
 
 struct nt_terrain {
     atomic_int holders; /* who has yet to close it */

@@ -6,8 +6,9 @@
 #include <stddef.h>
 
 #include "core/problem.h"
-#include "nanotouch/terrain.h"
+#include "nanotouch/advanced/terrain.h"
 #include "session/state.h"
+#include "session/terrain.h"
 #include "surface/extremes.h"
 
 static nt_status check_within(double value, const nt_problem *valid, nt_problem *problem)

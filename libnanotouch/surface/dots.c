@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Quantum dots: spherical caps on a flat (the paper's Fig. 19). */
 #include "core/same_bits.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/surface.h"
 
 #include <math.h>

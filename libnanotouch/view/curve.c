@@ -3,7 +3,7 @@
  * the distance there. */
 #include <math.h>
 
-#include "nanotouch/view.h"
+#include "nanotouch/advanced/view.h"
 #include "scene/parts.h"
 
 static double radius_at(const nt_plan *plan, const nt_place *place)

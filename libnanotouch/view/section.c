@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "core/same_bits.h"
-#include "nanotouch/view.h"
+#include "nanotouch/advanced/view.h"
 #include "scene/parts.h"
 
 double nt_view_tip_share(const nt_scene *scene)

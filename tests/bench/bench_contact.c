@@ -10,9 +10,10 @@
 #include <time.h>
 
 #include "../c/larger.h"
+#include "contact/maugis_table.h"
+#include "nanotouch/advanced/maugis_bank.h"
+#include "nanotouch/advanced/maugis_table.h"
 #include "nanotouch/material.h"
-#include "nanotouch/maugis_bank.h"
-#include "nanotouch/maugis_table.h"
 #include "nanotouch/surface.h"
 
 enum { COUNT = 4096, RUNS = 60, CELLS = 2000, PANELS = 120, BANK_CELLS = 7000, PIXELS = 128 };

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/fit.h"
-#include "nanotouch/random.h"
 
 enum { POINTS = 1000, MOST = 4096 }; /* of one branch; curves */
 

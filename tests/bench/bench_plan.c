@@ -15,6 +15,7 @@
 #include "drawn.h"
 #include "nanotouch/nanotouch.h"
 #include "scene/parts.h"
+#include "scene/scene.h"
 
 enum { POINTS = 256, REPETITIONS = 9, N = 64, RANDOM_PLANS = 20 };
 

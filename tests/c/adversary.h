@@ -8,8 +8,9 @@
 
 #include "adversary_draws.h"
 #include "adversary_rigs.h"
+#include "control/preflight.h"
 #include "failure_of.h"
-#include "nanotouch/preflight.h"
+#include "nanotouch/advanced/preflight.h"
 #include "session/state.h" /* the truth between two ticks */
 
 /* How close it came: 1 is the promise. */

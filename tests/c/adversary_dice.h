@@ -5,8 +5,8 @@
 
 #include <math.h>
 
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/nanotouch.h"
-#include "nanotouch/random.h"
 
 typedef enum attack { ATTACK_QUASI_STATIC, ATTACK_DYNAMIC, ATTACK_FAULT, ATTACKS } attack;
 

@@ -7,6 +7,8 @@
 #include <math.h>
 
 #include "adversary_dice.h"
+#include "control/margins.h"
+#include "core/rig.h"
 #include "larger.h"
 
 /* Gels to diamond, sharp to blunt, dry to wet, in vacuum, in a liquid, charged. */

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/settings.h"
 
 static inline double between(nt_random *random, double low, double high)

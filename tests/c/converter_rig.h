@@ -3,7 +3,7 @@
 #ifndef TESTS_CONVERTER_RIG_H
 #define TESTS_CONVERTER_RIG_H
 
-#include "nanotouch/converters.h"
+#include "nanotouch/advanced/converters.h"
 #include "simulated_bus.h"
 
 static inline nt_status bus_exchange(void *context, int converter, const nt_transfer *transfers, int count)

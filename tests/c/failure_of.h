@@ -2,7 +2,7 @@
 #ifndef TESTS_FAILURE_OF_H
 #define TESTS_FAILURE_OF_H
 
-#include "nanotouch/faults.h"
+#include "nanotouch/advanced/faults.h"
 #include "nanotouch/guarantee.h"
 
 /* Which failure of the guarantee a fault is; NT_FAILURES: none, the first number holds. */

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/fit.h"
-#include "nanotouch/random.h"
 
 enum { POINTS = 250 };
 

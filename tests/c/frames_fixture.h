@@ -14,9 +14,9 @@
 
 #include <unistd.h>
 
+#include "nanotouch/advanced/observer.h"
 #include "nanotouch/commands.h"
 #include "nanotouch/frames.h"
-#include "nanotouch/observer.h"
 
 enum { FRAME_WORDS = sizeof(nt_frame) / sizeof(uint64_t) };
 

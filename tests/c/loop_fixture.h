@@ -3,7 +3,9 @@
 #ifndef TESTS_LOOP_FIXTURE_H
 #define TESTS_LOOP_FIXTURE_H
 
+#include "hal/sim/sim.h"
 #include "nanotouch/nanotouch.h"
+#include "session/hazard.h"
 
 typedef struct loop {
     nt_plan plan;

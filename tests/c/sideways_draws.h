@@ -7,10 +7,13 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "control/margins.h"
+#include "hal/sim/sim.h"
 #include "larger.h"
 #include "loop_fixture.h"
-#include "nanotouch/hazard.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/hazard.h"
+#include "nanotouch/advanced/random.h"
+#include "scene/interaction.h"
 
 #define LEVER 50.0 /* k_l [N/m] */
 #define DRY 1e12   /* a shear strength under which nothing slips [Pa] */

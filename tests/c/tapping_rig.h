@@ -10,9 +10,10 @@
 #include <string.h>
 
 #include "converter_rig.h"
+#include "hal/sim/sim.h"
 #include "host_fixture.h"
 #include "larger.h"
-#include "nanotouch/hal_spi.h"
+#include "nanotouch/advanced/hal_spi.h"
 #include "nanotouch/material.h"
 #include "nanotouch/nanotouch.h"
 

@@ -10,7 +10,7 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 
 static const nt_jkr_shape cone = {{NT_SHAPE_CONE, 0, 0.0, 0.6, 0.0}, 1e6, 0.05};
 static const nt_jkr_shape punch = {{NT_SHAPE_PUNCH, 0, 50e-9, 0.0, 0.0}, 1e6, 0.05};

@@ -10,8 +10,9 @@
 
 #include <cmocka.h>
 
+#include "contact/contact_equilibrium.h"
 #include "maugis_fixture.h"
-#include "nanotouch/contact_equilibrium.h"
+#include "nanotouch/advanced/contact_equilibrium.h"
 
 static nt_contact_law law_of(nt_model model, double lambda)
 {

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "maugis_fixture.h"
-#include "nanotouch/maugis_bank.h"
+#include "nanotouch/advanced/maugis_bank.h"
 
 static nt_bank_value eval_radius(const nt_maugis_bank *bank, double lambda, double radius, double d)
 {

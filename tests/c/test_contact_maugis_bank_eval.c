@@ -7,9 +7,10 @@
 
 #include <cmocka.h>
 
+#include "contact/maugis_bank.h"
 #include "larger.h"
 #include "maugis_fixture.h"
-#include "nanotouch/maugis_bank.h"
+#include "nanotouch/advanced/maugis_bank.h"
 
 enum { PANELS = 60, CELLS = 2000 };
 static nt_maugis_panel panels[PANELS];

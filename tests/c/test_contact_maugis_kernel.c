@@ -10,8 +10,9 @@
 
 #include <cmocka.h>
 
+#include "contact/maugis_table.h"
 #include "maugis_fixture.h"
-#include "nanotouch/maugis_table.h"
+#include "nanotouch/advanced/maugis_table.h"
 
 enum { CAPACITY = 300, COUNT_MAX = 1500 };
 static nt_maugis_cell cells[CAPACITY];

@@ -9,9 +9,10 @@
 
 #include <cmocka.h>
 
+#include "contact/maugis_table.h"
 #include "larger.h"
 #include "maugis_fixture.h"
-#include "nanotouch/maugis_table.h"
+#include "nanotouch/advanced/maugis_table.h"
 
 enum { CAPACITY = 2000 };
 static nt_maugis_cell cells[CAPACITY];

@@ -11,7 +11,7 @@
 #include "../reference/geometry_table.h"
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 
 static const nt_shape sphere = {NT_SHAPE_PARABOLOID, 0, 30e-9, 0.0, 0.0};
 static const nt_lever lever = {8.0, 0.2};

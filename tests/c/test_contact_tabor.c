@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 
 /* Two equal balls are one of half the radius on a flat; a flat changes nothing; a hollow makes the ball seem larger. */
 static void effective_radius(void **state)

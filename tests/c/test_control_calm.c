@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "core/rig.h"
 #include "larger.h"
 #include "nanotouch/control.h"
 

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "control/bound.h"
+#include "control/margins.h"
 #include "control_draws.h"
 #include "larger.h"
 #include "nanotouch/margins.h"

@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/control.h"
-#include "nanotouch/random.h"
 
 #define PI 3.14159265358979323846
 

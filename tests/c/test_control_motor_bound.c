@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/control.h"
-#include "nanotouch/random.h"
 
 enum { LATE_MOST = 8, AXES = NT_AXES };
 

@@ -12,7 +12,7 @@
 #include "control/motor.h"
 #include "control_draws.h"
 #include "larger.h"
-#include "nanotouch/motor_bound.h"
+#include "nanotouch/advanced/motor_bound.h"
 #include "nanotouch/touch.h"
 
 #define PI 3.14159265358979323846

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/control.h"
-#include "nanotouch/random.h"
 
 /* In the operator's scale, so that alpha_p = alpha_f = 1. */
 typedef struct loop {

@@ -8,9 +8,11 @@
 
 #include <cmocka.h>
 
+#include "control/preflight.h"
+#include "core/rig.h"
 #include "larger.h"
-#include "nanotouch/preflight.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/preflight.h"
+#include "nanotouch/advanced/random.h"
 
 /* What is wrong with the rig. */
 typedef struct trouble {

@@ -10,9 +10,11 @@
 
 #include <cmocka.h>
 
+#include "control/preflight.h"
 #include "control_draws.h"
+#include "core/rig.h"
 #include "larger.h"
-#include "nanotouch/preflight.h"
+#include "nanotouch/advanced/preflight.h"
 
 #define PI 3.14159265358979323846
 

@@ -10,6 +10,7 @@
 
 #include "../reference/loop_table.h"
 #include "../reference/sideways_table.h"
+#include "control/margins.h"
 #include "larger.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/servo.h"

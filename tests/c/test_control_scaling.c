@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "core/rig.h"
 #include "nanotouch/control.h"
 
 /* Eq. 21 in SI (erratum E17): L = 0.1 um and delta_max = 0.3 um over 2 cm; 10 N over 2.64 uN (10 V, 0.033 um/V, 8 N/m)

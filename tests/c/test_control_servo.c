@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/servo.h"
 
 static const nt_signals still = {.master_damping = 100.0, .scaling = {2e-5, 3e6}, .gain_factor = 1.0};

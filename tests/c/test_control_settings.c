@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "core/rig.h"
 #include "nanotouch/control.h"
 
 static void defaults_are_valid_and_inside_the_rig(void **state)

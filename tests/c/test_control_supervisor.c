@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The table of docs/safety.md: every state x every event, every pair of events, and how long each takes. */
+ * The table of docs/evidence/safety.md: every state x every event, every pair of events, and how long each takes. */
 #include <float.h>
 
+#include "core/rig.h"
 #include "supervisor_fixture.h"
 
 static void no_event(input *in)

@@ -9,9 +9,10 @@
 
 #include <cmocka.h>
 
+#include "core/rig.h"
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/control.h"
-#include "nanotouch/random.h"
 
 #define ONE_TICK 1e-4
 enum { FADE = 500 }; /* ticks in 50 ms */

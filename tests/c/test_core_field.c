@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 
 typedef struct pair {
     int other;

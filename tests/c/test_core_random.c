@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 
 /* The numbers were computed by a separate implementation in Python from the published algorithms (arbitrary integers
  * masked to 64 bits); splitmix64's agree with its well-known sequence for the seed 1234567, xoshiro256++'s with the one

@@ -4,7 +4,7 @@
 
 #include "assertions.h"
 #include "core/same_bits.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 
 #define BOUND (LDBL_MANT_DIG > DBL_MANT_DIG ? DBL_EPSILON : 2.0 * DBL_EPSILON)
 enum { DRAWS = 200000 };

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "curves/free_law.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 
 enum { POINTS = 1600, SEEDS = 40 };
 

@@ -11,8 +11,8 @@
 
 #include "assertions.h"
 #include "curves/robust.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/curves.h"
-#include "nanotouch/random.h"
 
 enum { POINTS = 600, GUARD = 8 };
 

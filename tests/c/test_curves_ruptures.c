@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "curves/ruptures.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 
 enum { POINTS = 1200 };
 

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "cantilever_fields.h"
+#include "core/rig.h"
 #include "larger.h"
 
 #define PI 3.14159265358979323846

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "dynamics/dynamics.h"
 #include "larger.h"
 #include "nanotouch/dynamics.h"
 

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "dynamics/dynamics.h"
 #include "nanotouch/dynamics.h"
 
 /* From rest under a constant force: v = f/b (1 - e^-x), position = f m/b^2 (x - 1 + e^-x), x = b t/m. The factor in x

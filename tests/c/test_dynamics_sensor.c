@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "dynamics/dynamics.h"
 #include "nanotouch/dynamics.h"
 
 static void ideal_sensor_is_transparent(void **state)

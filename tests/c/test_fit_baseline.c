@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/fit.h"
-#include "nanotouch/random.h"
 
 enum { POINTS = 1500 };
 

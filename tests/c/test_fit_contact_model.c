@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/geometry.h"
 #include "nanotouch/fit.h"
-#include "nanotouch/geometry.h"
 
 static void assert_near(double value, double expected, double tolerance)
 {

@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/fit.h"
-#include "nanotouch/random.h"
 
 enum { POINTS = 600 };
 

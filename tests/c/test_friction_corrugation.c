@@ -5,8 +5,8 @@
 
 #include "assertions.h"
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/friction.h"
-#include "nanotouch/random.h"
 
 typedef struct motion {
     double eta, heat, speed; /* reduced */

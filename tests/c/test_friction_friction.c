@@ -4,8 +4,8 @@
 
 #include "assertions.h"
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/friction.h"
-#include "nanotouch/random.h"
 
 static const nt_friction soft = {5e9, 0.02, 50e6, 0.3};
 static const nt_friction_contact touch = {2e-9, 10e-9};

@@ -10,7 +10,8 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/chips.h"
+#include "hal/chips/chips.h"
+#include "nanotouch/advanced/chips.h"
 
 static const nt_chip *chip(const char *name)
 {

@@ -9,8 +9,9 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/hal_iio.h"
-#include "nanotouch/timing.h"
+#include "hal/timing.h"
+#include "nanotouch/advanced/hal_iio.h"
+#include "nanotouch/advanced/timing.h"
 
 /* One each up to 32, then the five leading bits. */
 static int bucket_by_hand(int64_t duration)

@@ -13,10 +13,11 @@
 #include "conformance.h"
 #include "converter_rig.h"
 #include "host_fixture.h"
-#include "nanotouch/hal_spi.h"
+#include "nanotouch/advanced/hal_replay.h"
+#include "nanotouch/advanced/hal_spi.h"
+#include "nanotouch/advanced/realtime.h"
+#include "nanotouch/advanced/timing.h"
 #include "nanotouch/nanotouch.h" /* no name of these headers is taken by another */
-#include "nanotouch/realtime.h"
-#include "nanotouch/timing.h"
 #include "pointer_device.h"
 
 static conformance subject(nt_half half, const nt_backend *backend, void *context)

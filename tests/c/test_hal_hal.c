@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "device_fixture.h"
+#include "hal/hal.h"
 
 static void calls_come_in_their_order(void **state)
 {

@@ -11,7 +11,7 @@
 #include "conformance.h"
 #include "host_fixture.h"
 #include "iiod_model.h"
-#include "nanotouch/hal_iio.h"
+#include "nanotouch/advanced/hal_iio.h"
 
 static iiod_model model;
 static nt_iio iio;

@@ -8,7 +8,8 @@
 #include <cmocka.h>
 
 #include "fake_gpiod.h"
-#include "nanotouch/hal_linux.h"
+#include "hal/linux/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 static int setup(void **state)
 {

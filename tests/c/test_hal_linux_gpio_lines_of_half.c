@@ -12,8 +12,9 @@
 
 #include "converter_rig.h"
 #include "fake_gpiod.h"
+#include "hal/linux/hal_linux.h"
 #include "host_fixture.h"
-#include "nanotouch/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 static fake_line *const stop_line = &fake_chips[0].lines[0], *const limit_line = &fake_chips[0].lines[1];
 static fake_line *const laser_line = &fake_chips[1].lines[0], *const dog_line = &fake_chips[1].lines[1];

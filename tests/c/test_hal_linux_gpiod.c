@@ -9,7 +9,8 @@
 #include <cmocka.h>
 
 #include "fake_gpiod.h"
-#include "nanotouch/hal_linux.h"
+#include "hal/linux/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "nanotouch/types.h"
 
 static fake_line *const stop_line = &fake_chips[0].lines[1];

@@ -9,7 +9,7 @@
 /* after what it needs */
 #include <cmocka.h>
 
-#include "nanotouch/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 static void every_line_can_be_listed(void **unused)
 {

@@ -9,7 +9,7 @@
 
 #include "failing_heap.h"
 #include "fake_gpiod.h"
-#include "nanotouch/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 static void open_without_memory(void **state)
 {

@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/realtime.h"
-#include "nanotouch/timing.h"
+#include "nanotouch/advanced/realtime.h"
+#include "nanotouch/advanced/timing.h"
 
 typedef struct calls {
     int reads, computes, writes, stop_at;

@@ -11,9 +11,9 @@
 #include <cmocka.h>
 
 #include "host_fixture.h"
+#include "nanotouch/advanced/hal_replay.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/hal.h"
-#include "nanotouch/hal_replay.h"
-#include "nanotouch/random.h"
 
 enum { ROWS = 500 };
 

@@ -8,8 +8,10 @@
 
 #include <cmocka.h>
 
+#include "hal/hal.h"
+#include "hal/sim/sim.h"
 #include "larger.h"
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 #define T 1e-4
 enum { N = 16 };

@@ -9,8 +9,9 @@
 
 #include <cmocka.h>
 
+#include "hal/sim/sim.h"
 #include "larger.h"
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 #define T 1e-4
 static nt_plan plan;

@@ -9,8 +9,10 @@
 
 #include <cmocka.h>
 
+#include "core/rig.h"
+#include "hal/sim/sim.h"
 #include "larger.h"
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 #define T 1e-4
 #define BOLTZMANN 1.380649e-23

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 static nt_plan plan;
 

@@ -3,9 +3,11 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "hal/sim/sim.h"
 #include "larger.h"
-#include "nanotouch/random.h"
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/random.h"
+#include "nanotouch/advanced/sim.h"
+#include "scene/interaction.h"
 
 #define T 1e-4
 static nt_plan rough, smooth;

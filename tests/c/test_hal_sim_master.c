@@ -9,7 +9,8 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/sim.h"
+#include "hal/sim/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 #define T 1e-4
 static nt_plan plan;

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "host_fixture.h"
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 static void rehearse(nt_half half, void *context, const nt_sim_setup *setup)
 {

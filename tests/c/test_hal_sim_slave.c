@@ -9,7 +9,9 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/sim.h"
+#include "core/rig.h"
+#include "hal/sim/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 #define T 1e-4
 static nt_plan plan;

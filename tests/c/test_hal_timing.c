@@ -8,7 +8,8 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/timing.h"
+#include "hal/timing.h"
+#include "nanotouch/advanced/timing.h"
 
 static nt_histogram histogram;
 

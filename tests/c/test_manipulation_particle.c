@@ -4,7 +4,8 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/particle.h"
+#include "manipulation/particle.h"
+#include "nanotouch/advanced/particle.h"
 #include "particle_fixture.h"
 
 /* A tip that neither pulls nor rubs: its force goes through the centre. */

@@ -4,8 +4,9 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/particles.h"
-#include "nanotouch/random.h"
+#include "manipulation/particles.h"
+#include "nanotouch/advanced/particles.h"
+#include "nanotouch/advanced/random.h"
 #include "particle_fixture.h"
 
 #define LOW 1.5e-6 /* height of the tip over the substrate: its flank pushes [m] */

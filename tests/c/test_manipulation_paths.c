@@ -5,8 +5,8 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/particle.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/particle.h"
+#include "nanotouch/advanced/random.h"
 
 enum { STEPS = 100, MODES = 8 };
 

@@ -4,8 +4,9 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/pushed.h"
-#include "nanotouch/random.h"
+#include "manipulation/pushed.h"
+#include "nanotouch/advanced/pushed.h"
+#include "nanotouch/advanced/random.h"
 
 static nt_particles latex(void)
 {

@@ -4,9 +4,9 @@
 
 #include "assertions.h"
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
+#include "nanotouch/advanced/rod.h"
 #include "nanotouch/material.h"
-#include "nanotouch/random.h"
-#include "nanotouch/rod.h"
 
 #define BESIDE 70e-9 /* the tip touches here */
 

@@ -7,6 +7,7 @@
 #include "assertions.h"
 #include "larger.h"
 #include "nanotouch/nanotouch.h"
+#include "plasticity/dents.h"
 
 static const nt_indentation gold = {20e-9, 77e9, 0.35e9};
 

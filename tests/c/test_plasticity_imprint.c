@@ -6,9 +6,9 @@
 
 #include "assertions.h"
 #include "larger.h"
+#include "nanotouch/advanced/plasticity.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/material.h"
-#include "nanotouch/plasticity.h"
-#include "nanotouch/random.h"
 
 enum { NX = 160, NY = 140 };
 

@@ -5,9 +5,9 @@
 
 #include "assertions.h"
 #include "larger.h"
+#include "nanotouch/advanced/plasticity.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/material.h"
-#include "nanotouch/plasticity.h"
-#include "nanotouch/random.h"
 
 static const nt_indentation gold = {20e-9, 77e9, 0.35e9};
 

@@ -2,8 +2,8 @@
  * Beside the published forms for a sphere: width sqrt(8 P/(pi H)), ploughing 4a/(3 pi R) of the load (Bowden and Tabor
  * 1950, small contacts); areas are summed here. */
 #include "assertions.h"
+#include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/material.h"
-#include "nanotouch/plasticity.h"
 
 static const nt_scratching plain = {50e-9, 1e9, 80e6, 0.0, 1.0};
 static const nt_scratching layered = {50e-9, 0.2e9, 80e6, 1.5e-9, 5e9};

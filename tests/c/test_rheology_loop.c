@@ -7,8 +7,8 @@
 
 #include "assertions.h"
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/material.h"
-#include "nanotouch/random.h"
 #include "nanotouch/viscoelastic_loop.h"
 
 enum { TICKS = 2001, HISTORY = 200 };

@@ -12,8 +12,8 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/random.h"
-#include "nanotouch/scan.h"
+#include "nanotouch/advanced/random.h"
+#include "nanotouch/advanced/scan.h"
 
 enum { CASES = 6, TICKS = 2048, WINDOW = 512, TOO_HIGH = 8 };
 #define SMALL 50e-12 /* step of the base [m] */

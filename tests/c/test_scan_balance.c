@@ -11,8 +11,9 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/balance.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/balance.h"
+#include "nanotouch/advanced/random.h"
+#include "scan/balance.h"
 
 enum { CASES = 16 };
 static nt_plan plan;

@@ -11,9 +11,10 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/flow.h"
+#include "nanotouch/advanced/flow.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/material.h"
-#include "nanotouch/random.h"
+#include "scan/flow.h"
 
 enum { CASES = 24 };
 static nt_plan plan;

@@ -10,8 +10,9 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/material.h"
-#include "nanotouch/random.h"
+#include "scan/flow.h"
 #include "scan/loop.h"
 
 enum { CASES = 12, PARTS = 24, TICKS = 12000, ANSWERS_AT_A_FLAT = 5 };

@@ -10,9 +10,9 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
+#include "nanotouch/advanced/scan.h"
 #include "nanotouch/material.h"
-#include "nanotouch/random.h"
-#include "nanotouch/scan.h"
 
 enum { LEVERS = 12, PERIODS = 20 };
 

@@ -9,8 +9,9 @@
 
 #include <cmocka.h>
 
+#include "dynamics/dynamics.h"
 #include "larger.h"
-#include "nanotouch/scan.h"
+#include "nanotouch/advanced/scan.h"
 
 enum { N = 256, LINES = 4 };
 static double heights[LINES * N], coefficients[LINES * N];

@@ -10,9 +10,9 @@
 
 #include <cmocka.h>
 
+#include "nanotouch/advanced/random.h"
+#include "nanotouch/advanced/tapping.h"
 #include "nanotouch/material.h"
-#include "nanotouch/random.h"
-#include "nanotouch/tapping.h"
 
 static nt_plan plan;
 

@@ -10,9 +10,9 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/force_table.h"
+#include "nanotouch/advanced/force_table.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"
-#include "nanotouch/random.h"
 
 static nt_plan plan;
 static nt_force_piece pieces[NT_FORCE_PIECES];

@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"
-#include "nanotouch/random.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"
 

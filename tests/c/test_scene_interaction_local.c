@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"
-#include "nanotouch/random.h"
 
 enum { N = 24 };
 static double coefficients[N * N], ratios[N * N];

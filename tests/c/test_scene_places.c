@@ -12,8 +12,9 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"
-#include "nanotouch/random.h"
+#include "scene/scene.h"
 
 enum { N = 24, CASES = 4 };
 static const double PIXEL = 6e-9;

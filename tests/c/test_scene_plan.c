@@ -8,9 +8,9 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
-#include "nanotouch/random.h"
 
 #define PI 3.14159265358979323846
 

@@ -10,6 +10,7 @@
 #include "nanotouch/plan.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scene.h"
+#include "scene/scene.h"
 
 static void defaults_are_valid(void **state)
 {

@@ -5,8 +5,9 @@
 
 #include "assertions.h"
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"
-#include "nanotouch/random.h"
+#include "scene/interaction.h"
 
 enum { N = 16, STEPS = 60 };
 static double coefficients[N * N];

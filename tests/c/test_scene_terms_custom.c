@@ -9,9 +9,9 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
-#include "nanotouch/random.h"
 
 static nt_plan plan;
 static nt_problem problem;

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "nanotouch/plan.h"
+#include "scene/scene.h"
 
 static nt_plan plan;
 

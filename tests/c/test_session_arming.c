@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "nanotouch/nanotouch.h"
+#include "session/hazard.h"
 
 static char untouched;
 

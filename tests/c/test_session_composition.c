@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "session/hazard.h"
 #include "session_fixture.h"
 
 enum { N = 64 };

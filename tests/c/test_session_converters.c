@@ -15,8 +15,8 @@
 #include "converter_rig.h"
 #include "host_fixture.h"
 #include "larger.h"
+#include "nanotouch/advanced/hal_spi.h"
 #include "nanotouch/control.h"
-#include "nanotouch/hal_spi.h"
 #include "spidev_calls.h"
 #include "spidev_model.h"
 

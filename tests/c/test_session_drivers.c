@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Faults of the list in docs/safety.md that lie below a session, on the drivers themselves: touch step, half on
+ * Faults of the list in docs/evidence/safety.md that lie below a session, on the drivers themselves: touch step, half on
  * converters, spidev's driver whose system calls end in a model of the kernel's, and the code of the GPIO lines on a
  * fake libgpiod. Single, and each after each other one. Prints the tables of docs/hardware.md. */
 #include <math.h>
@@ -16,9 +16,9 @@
 #include "fake_gpiod.h"
 #include "host_fixture.h"
 #include "larger.h"
+#include "nanotouch/advanced/hal_linux.h"
+#include "nanotouch/advanced/hal_spi.h"
 #include "nanotouch/control.h"
-#include "nanotouch/hal_linux.h"
-#include "nanotouch/hal_spi.h"
 #include "spidev_calls.h"
 #include "spidev_model.h"
 
@@ -120,7 +120,7 @@ static void hold_the_set_point(int has_crc)
 /* --- the faults --- */
 
 typedef struct fault {
-    int row;          /* of the list in docs/safety.md */
+    int row;          /* of the list in docs/evidence/safety.md */
     const char *name; /* as the page shows it */
     bus_fault fault;
     int corrupt, error, errors; /* as of simulated_bus */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Faults injected into the simulated rig while the operator presses: reaction, time to it, worst force and indentation,
- * single (the table of docs/safety.md) and in pairs; and hands and walls that try to break the force limit. */
+ * single (the table of docs/evidence/safety.md) and in pairs; and hands and walls that try to break the force limit. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 #include "failure_of.h"
 #include "fault_cases.h"
 #include "larger.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 
 /* bound: of the force [N]. */
 static void check_bounds(const loop *l, const outcome *o, double bound)
@@ -79,7 +79,7 @@ static void print_head(void)
         "|\n|---|---|---|---|---|---|---|---|---|\n");
 }
 
-/* Prints the table of docs/safety.md. */
+/* Prints the table of docs/evidence/safety.md. */
 static void every_fault_has_its_reaction(void **state)
 {
     (void)state;

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/observer.h"
+#include "nanotouch/advanced/observer.h"
 #include "session_fixture.h"
 
 static void expect_frame(const nt_frame *frame, const nt_record *record, const nt_session *session)

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 
 #include "assertions.h"
+#include "session/frames.h"
 
 /* The system's name for a block of a session. */
 static const char *system_name(char *full, const char *kind, const char *name)

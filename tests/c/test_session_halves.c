@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "core/rig.h"
 #include "device_fixture.h"
 #include "larger.h"
 #include "session_fixture.h"

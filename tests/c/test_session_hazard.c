@@ -11,6 +11,7 @@
 
 #include "larger.h"
 #include "loop_fixture.h"
+#include "session/hazard.h"
 #include "session/state.h" /* the truth between two ticks */
 
 static loop l;

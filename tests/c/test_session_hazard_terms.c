@@ -10,15 +10,20 @@
 #include <cmocka.h>
 
 #include "control/bound.h"
+#include "control/preflight.h"
+#include "control/servo.h"
 #include "larger.h"
+#include "nanotouch/advanced/hazard.h"
+#include "nanotouch/advanced/preflight.h"
+#include "nanotouch/advanced/terrain.h"
 #include "nanotouch/friction.h"
-#include "nanotouch/hazard.h"
-#include "nanotouch/preflight.h"
 #include "nanotouch/servo.h"
 #include "nanotouch/supervisor.h"
-#include "nanotouch/terrain.h"
+#include "scene/interaction.h"
 #include "scene/parts.h"
 #include "session/grip.h"
+#include "session/hazard.h"
+#include "session/terrain.h"
 #include "session/well.h"
 
 #define PI 3.14159265358979323846

@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "control/margins.h"
+#include "hal/sim/sim.h"
 #include "sideways_draws.h"
 
 #define LANDS 0.05    /* of the factor at the limit: so gently it lands */

@@ -11,7 +11,7 @@
 
 #include "larger.h"
 #include "loop_fixture.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 
 /* No noise, no steps, strong actuators, a hard sample without adhesion: what is left is the linear loop. */
 static nt_session_setup ideal_setup(double rate, double delay)

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/observer.h"
+#include "nanotouch/advanced/observer.h"
 #include "session_fixture.h"
 
 enum { TICKS = 20000, OBSERVERS = 3 };

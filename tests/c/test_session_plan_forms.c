@@ -5,10 +5,11 @@
 #include <stdio.h>
 
 #include "assertions.h"
+#include "hal/sim/sim.h"
 #include "larger.h"
+#include "nanotouch/advanced/sim.h"
+#include "nanotouch/advanced/terrain.h"
 #include "nanotouch/nanotouch.h"
-#include "nanotouch/sim.h"
-#include "nanotouch/terrain.h"
 
 #define T 1e-4
 #define CLEARANCE 20e-9

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What stands beside a rig of real drivers fails (rows 18, 27, 28 and 32 of the list in docs/safety.md): nobody takes
- * the records any more, viewers are killed or hang, the program of the hand is killed. Single, and with the bus failing
- * in the same moment. A busy machine is late and holds; no time is judged. */
+ * What stands beside a rig of real drivers fails (rows 18, 27, 28 and 32 of the list in docs/evidence/safety.md):
+ * nobody takes the records any more, viewers are killed or hang, the program of the hand is killed. Single, and with
+ * the bus failing in the same moment. A busy machine is late and holds; no time is judged. */
 #define _DEFAULT_SOURCE
 #include <math.h>
 #include <setjmp.h>
@@ -17,8 +17,10 @@
 
 #include <cmocka.h>
 
+#include "nanotouch/advanced/observer.h"
 #include "nanotouch/mailbox.h"
 #include "rig_session.h"
+#include "session/frames.h"
 
 enum { VIEWERS = 6, PATIENCE = 60000, RING = 64 }; /* looks, 1 ms apart; records */
 

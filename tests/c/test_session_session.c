@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "core/rig.h"
 #include "larger.h"
 #include "nanotouch/nanotouch.h"
 

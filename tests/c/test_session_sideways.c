@@ -2,6 +2,8 @@
  * A hand of three axes on a tip that rubs: what it feels, where the loop turns unstable, what is promised. */
 #include <stdlib.h>
 
+#include "control/margins.h"
+#include "scene/interaction.h"
 #include "sideways_draws.h"
 
 /* Stuck: motor and hand balance, alpha_f times the force on the tip. Sliding: what the hand pushes with beyond that

@@ -12,8 +12,8 @@
 
 #include "larger.h"
 #include "loop_fixture.h"
-#include "nanotouch/hazard.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/hazard.h"
+#include "nanotouch/advanced/random.h"
 
 static double between(nt_random *random, double low, double high)
 {

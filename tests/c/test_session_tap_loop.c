@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "session_fixture.h"
 
 enum { RIGS = 24, TICKS_MAX = 60000, HALVINGS = 5, RESTS = 0, RINGS = 1, STOPS = 2 };

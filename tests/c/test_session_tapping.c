@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "hal/sim/sim.h"
 #include "larger.h"
 #include "session_fixture.h"
 

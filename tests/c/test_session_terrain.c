@@ -13,7 +13,8 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/terrain.h"
+#include "nanotouch/advanced/terrain.h"
+#include "session/terrain.h"
 
 enum { MOST = 129 };
 static double heights[MOST * MOST];

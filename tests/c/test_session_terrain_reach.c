@@ -10,7 +10,8 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/terrain.h"
+#include "nanotouch/advanced/terrain.h"
+#include "session/terrain.h"
 
 enum { N = 161 };
 #define PIXEL 1e-9

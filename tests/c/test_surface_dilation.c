@@ -10,8 +10,9 @@
 #include <time.h>
 
 #include "larger.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/surface.h"
+#include "surface/surface.h"
 
 enum { NX = 150, NY = 61 };
 #define DX 2e-9

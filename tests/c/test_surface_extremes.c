@@ -11,7 +11,7 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "surface/extremes.h"
 
 enum { NX = 129, NY = 97 };

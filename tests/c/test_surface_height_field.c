@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/surface.h"
 
 enum { NX = 90, NY = 70 };

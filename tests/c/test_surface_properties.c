@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/surface.h"
 
 enum { NX = 17, NY = 11, PIXELS = NX * NY };

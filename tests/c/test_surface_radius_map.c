@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "larger.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/surface.h"
 
 enum { NX = 120, NY = 100 };

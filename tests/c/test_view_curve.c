@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "nanotouch/view.h"
+#include "nanotouch/advanced/view.h"
 
 enum { N = 101 };
 static nt_plan plan;

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "nanotouch/view.h"
+#include "nanotouch/advanced/view.h"
 
 static nt_plan plan;
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "input.h"
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 

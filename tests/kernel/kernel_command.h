@@ -7,9 +7,10 @@
 
 #include <sys/wait.h>
 
+#include "hal/sim/sim.h"
 #include "kernel_rig.h"
+#include "nanotouch/advanced/sim.h"
 #include "nanotouch/session.h"
-#include "nanotouch/sim.h"
 
 #define COMMAND_RATE 1e3 /* of the rig file [Hz] */
 

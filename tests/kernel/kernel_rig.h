@@ -7,10 +7,10 @@
 #include "converter_rig.h"
 #include "host_fixture.h"
 #include "kernel_bus.h"
+#include "nanotouch/advanced/hal_iio.h"
+#include "nanotouch/advanced/hal_linux.h"
+#include "nanotouch/advanced/hal_spi.h"
 #include "nanotouch/control.h"
-#include "nanotouch/hal_iio.h"
-#include "nanotouch/hal_linux.h"
-#include "nanotouch/hal_spi.h"
 
 enum { UNDER_WAY = 50, APPROACH = 3000, AFTER = 20 }; /* ticks: before a fault, to the set-point, after a fault */
 

@@ -11,7 +11,7 @@
 
 #include "kernel_bus.h"
 #include "kernel_tapping.h"
-#include "nanotouch/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "tapping_rig.h"
 
 enum { WAY = DOWN + 600 }; /* ticks: down, and 40 nm along the wave */

@@ -13,6 +13,8 @@
 #include <cmocka.h>
 
 #include "conformance.h"
+#include "hal/chips/chips.h"
+#include "hal/linux/hal_linux.h"
 #include "kernel_command.h"
 #include "kernel_rig.h"
 #include "kernel_tapping.h"

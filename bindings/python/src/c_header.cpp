@@ -2,7 +2,7 @@
 // force_table.h, and the constants of plan and touch step in single precision, as C.
 #include "control.h"
 #include "descriptions.h"
-#include "nanotouch/force_table.h"
+#include "nanotouch/advanced/force_table.h"
 #include "nanotouch_single_text.hpp"
 
 namespace

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "hal.h"
-#include "nanotouch/hal_iio.h"
-#include "nanotouch/hal_spi.h"
+#include "nanotouch/advanced/hal_iio.h"
+#include "nanotouch/advanced/hal_spi.h"
 #ifdef NANOTOUCH_HAS_LINUX
-#include "nanotouch/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 #endif
 
 // --- the tables of a rig file, whose numbers are SI by now ---

@@ -9,7 +9,7 @@
 
 #include "descriptions.h"
 #include "hal.h"
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 // A simulated rig of which one half is driven; its clock is ticks times period.
 struct Simulated {

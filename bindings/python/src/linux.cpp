@@ -2,7 +2,7 @@
 // hal_linux.h: what `nanotouch doctor` lists
 #ifdef NANOTOUCH_HAS_LINUX
 #include "chapters.h"
-#include "nanotouch/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 void bind_linux(py::module_ &module)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hal_replay.h: a half that gives a recording again
-#include "nanotouch/hal_replay.h"
+#include "nanotouch/advanced/hal_replay.h"
 
 #include "hal.h"
 

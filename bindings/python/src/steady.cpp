@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // balance.h, steady.h: steady tapping to a demanded accuracy
-#include "nanotouch/steady.h"
+#include "nanotouch/advanced/steady.h"
 
 #include <algorithm>
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "hal.h"
-#include "nanotouch/realtime.h"
-#include "nanotouch/timing.h"
+#include "nanotouch/advanced/realtime.h"
+#include "nanotouch/advanced/timing.h"
 
 static py::dict histogram_of(const nt_histogram &histogram)
 {

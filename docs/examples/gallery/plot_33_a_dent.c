@@ -2,7 +2,7 @@
  * The loops of plot_33_a_dent.py, one after the other: indentation (nm), force (nN). */
 #include <stdio.h>
 
-#include "nanotouch/plasticity.h"
+#include "nanotouch/advanced/plasticity.h"
 
 enum { POINTS = 200 };
 

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "contact/maugis/bank_panels.h"
+#include "contact/maugis_bank.h"
 
 #define BETWEEN_CHECKS 1.25 /* errors between the points that are measured can be a little larger */
 #define AWAY_FROM_FOLD 1e-4 /* reduced indentations */

@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 #include "contact/maugis/bank.h"
+#include "contact/maugis_bank.h"
 
 /* {lambda, d} and the units they are counted in. */
 typedef struct {

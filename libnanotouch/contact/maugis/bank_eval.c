@@ -8,6 +8,7 @@
 #include <stddef.h>
 
 #include "contact/maugis/bank.h"
+#include "contact/maugis_bank.h"
 
 /* A place in the bank. */
 typedef struct {

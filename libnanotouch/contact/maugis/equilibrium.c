@@ -3,11 +3,12 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "contact/contact_equilibrium.h"
 #include "contact/maugis/apart.h"
 #include "contact/maugis/functions.h"
 #include "contact/maugis/solve.h"
 #include "core/roots.h"
-#include "nanotouch/contact_equilibrium.h"
+#include "nanotouch/advanced/contact_equilibrium.h"
 
 static nt_contact_state state_of(const nt_maugis *maugis, double d, const nt_law_value *reduced)
 {

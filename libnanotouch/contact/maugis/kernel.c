@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 #include "contact/maugis/place.h"
+#include "contact/maugis_table.h"
 #include "core/strided.h"
 #include "core/variants.h"
 

@@ -9,6 +9,7 @@
 #include <stddef.h>
 
 #include "contact/maugis/cells.h"
+#include "contact/maugis_table.h"
 #include "nanotouch/material.h"
 
 #define DEFAULT_REACH 1000.0 /* reduced */

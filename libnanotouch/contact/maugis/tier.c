@@ -5,6 +5,7 @@
 
 #include "contact/maugis/place.h"
 #include "contact/maugis/solve.h"
+#include "contact/maugis_table.h"
 #include "contact/reduced.h"
 
 /* What the table does not cover, or has in closed form. */

@@ -18,8 +18,8 @@
 #include "contact/reduced.h"
 #include "core/problem.h"
 #include "core/roots.h"
-#include "nanotouch/field.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/field.h"
+#include "nanotouch/advanced/geometry.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_jkr_shape, path, __VA_ARGS__)
 

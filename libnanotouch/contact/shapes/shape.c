@@ -10,8 +10,8 @@
 #include "contact/shapes/profile.h"
 #include "core/problem.h"
 #include "core/strided.h"
-#include "nanotouch/field.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/field.h"
+#include "nanotouch/advanced/geometry.h"
 
 /* Converged to 1e-4 with the numerical half-space solution that tests/python/test_geometry.py repeats. */
 #define PYRAMID_4 0.73762

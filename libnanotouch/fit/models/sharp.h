@@ -5,7 +5,7 @@
 #define NANOTOUCH_FIT_MODELS_SHARP_H
 
 #include "fit/models/row.h"
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 #include "nanotouch/material.h"
 
 static inline nt_status nt_fit_sharp(double angle, double effective_modulus, nt_fit_branch *branch)

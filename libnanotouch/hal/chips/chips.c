@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Codes, voltages and frames of the chips in the tables. */
-#include "nanotouch/chips.h"
+#include "nanotouch/advanced/chips.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
+#include "hal/chips/chips.h"
 #include "hal/chips/families.h"
 
 /* --- which chips there are --- */

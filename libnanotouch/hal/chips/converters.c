@@ -2,11 +2,12 @@
  * A half on converters as a backend. A tick that does not work (short, stuck, damaged, not what was written) is read as
  * invalid, with nothing of it used: HOLD, and in the second tick RETRACT. NT_CONVERTER_BAD of them, or a bus that is
  * gone, are a lost device. */
-#include "nanotouch/converters.h"
+#include "nanotouch/advanced/converters.h"
 
 #include <math.h>
 #include <stddef.h>
 
+#include "hal/chips/chips.h"
 #include "hal/chips/half.h"
 
 enum { ATTEMPTS = 3 }; /* of each frame when a half is left: nobody comes after */

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "hal/chips/chips.h"
 #include "hal/chips/half.h"
 
 nt_status nt_converter_half_send(nt_converter_half *c, int converter, nt_chip_frame *frames, int count)

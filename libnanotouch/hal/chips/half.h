@@ -3,7 +3,7 @@
 #ifndef HAL_CHIPS_HALF_H
 #define HAL_CHIPS_HALF_H
 
-#include "nanotouch/converters.h"
+#include "nanotouch/advanced/converters.h"
 
 /* What has been read of all converters in one tick. */
 typedef struct nt_converter_answers {

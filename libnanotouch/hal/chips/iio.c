@@ -4,7 +4,7 @@
  * code left-aligned below. An answer has three bytes a channel, two's complement, and a last one that is 1. */
 #include <stddef.h>
 
-#include "nanotouch/hal_iio.h"
+#include "nanotouch/advanced/hal_iio.h"
 
 nt_chip nt_chip_of_iio(int bits, int channels, int is_output)
 {

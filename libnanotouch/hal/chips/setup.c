@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/problem.h"
+#include "hal/chips/chips.h"
 #include "hal/chips/half.h"
 
 #define LEAST_STEPS 16.0 /* of a converter within a range */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Which GPIO lines this machine has. Chips are /dev/gpiochip0, 1, ...; numbers may have gaps, a chip may vanish while
  * we look, and a chip that we may not open counts as absent: the list is for people and for finding lines by name. */
-#include "nanotouch/hal_linux.h"
+#include "hal/linux/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 #include <gpiod.h>
 #include <stdio.h>

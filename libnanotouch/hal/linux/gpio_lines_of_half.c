@@ -2,7 +2,8 @@
  * The safety lines as a half on converters wants them. */
 #include <stddef.h>
 
-#include "nanotouch/hal_linux.h"
+#include "hal/linux/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "nanotouch/types.h"
 
 /* A line that cannot be read has its flag set; so has what could not be asked at all. */

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "nanotouch/hal_linux.h"
+#include "hal/linux/hal_linux.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "nanotouch/types.h"
 
 enum { EVENTS_MAX = 64 }; /* the kernel's own limit for a request is 16 a line unless asked for more */

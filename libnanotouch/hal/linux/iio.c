@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Frames of hal/chips/iio.c as numbers of IIO: a channel's attribute `raw`, with (raw + offset) scale in millivolts. */
-#include "nanotouch/hal_iio.h"
+#include "nanotouch/advanced/hal_iio.h"
 
 #ifdef NT_HAS_IIO
 

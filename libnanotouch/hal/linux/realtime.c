@@ -4,7 +4,7 @@
 #define _GNU_SOURCE /* processors of a thread */
 #endif
 
-#include "nanotouch/realtime.h"
+#include "nanotouch/advanced/realtime.h"
 
 #if defined(__linux__)
 

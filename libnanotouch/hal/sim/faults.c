@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Faults of the simulated rig: a schedule, and what each kind does to a sample, an actuator or the surface. Numbers of
- * rows are those of the fault table in docs/safety.md. */
-#include "nanotouch/faults.h"
+ * rows are those of the fault table in docs/evidence/safety.md. */
+#include "nanotouch/advanced/faults.h"
 
 #include <math.h>
 #include <stddef.h>
 
+#include "dynamics/dynamics.h"
 #include "hal/reading.h"
 #include "parts.h"
 

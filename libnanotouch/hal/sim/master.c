@@ -9,6 +9,8 @@
 #include "core/axes.h"
 #include "core/clamp.h"
 #include "core/same_bits.h"
+#include "dynamics/dynamics.h"
+#include "hal/sim/sim.h"
 #include "parts.h"
 
 static void init_sensors(nt_sim_master *master)

@@ -7,7 +7,7 @@
 
 #include "core/noise.h"
 #include "dynamics/sensor.h"
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/sim.h"
 
 #ifdef __cplusplus
 extern "C" {

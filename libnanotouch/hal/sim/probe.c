@@ -5,7 +5,11 @@
 #include <stddef.h>
 
 #include "core/clamp.h"
+#include "core/rig.h"
+#include "hal/sim/sim.h"
 #include "parts.h"
+#include "plasticity/dents.h"
+#include "scene/interaction.h"
 #include "scene/parts.h"
 
 #define PERCEIVED 1e-3 /* touch feels nothing quicker [s] */

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "hal/sim/sim.h"
+#include "manipulation/pushed.h"
 #include "parts.h"
 
 #define MOVED 1e-10 /* less is no push that is told of [m] ... */

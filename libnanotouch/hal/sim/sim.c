@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The simulated rig: its two halves as backends, and both by hand as one rig. */
-#include "nanotouch/sim.h"
+#include "nanotouch/advanced/sim.h"
+#include "hal/hal.h"
+#include "hal/sim/sim.h"
 
 #include <math.h>
 #include <stddef.h>

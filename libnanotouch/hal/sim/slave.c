@@ -7,6 +7,9 @@
 
 #include "core/axes.h"
 #include "core/clamp.h"
+#include "core/rig.h"
+#include "dynamics/dynamics.h"
+#include "hal/sim/sim.h"
 #include "parts.h"
 
 #define SUBSTEP 0.25 /* of the dynamic cantilever [rad] */

@@ -4,8 +4,10 @@
 #include <math.h>
 
 #include "core/same_bits.h"
+#include "dynamics/dynamics.h"
 #include "nanotouch/material.h"
 #include "parts.h"
+#include "scan/flow.h"
 
 #define AT_REST 1e-6 /* of the free amplitude */
 #define TOLERANCE 1e-9

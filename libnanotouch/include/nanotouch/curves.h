@@ -151,8 +151,6 @@ typedef struct nt_curve_branch {
  * NT_CURVE_FEWEST points. Errors of nt_curve_fit_baseline. */
 NT_API nt_status nt_curve_read_branch(const nt_curve_segment *segment, const nt_curve_choice *choice, double *work,
                                       nt_curve_branch *branch, nt_problem *problem);
-/* Standard uncertainty of one force of a branch at z [N]. */
-NT_API double nt_curve_branch_sigma(const nt_curve_branch *branch, double z);
 
 /* --- The whole curve --- */
 

@@ -5,7 +5,7 @@
 #ifndef NANOTOUCH_DYNAMICS_H
 #define NANOTOUCH_DYNAMICS_H
 
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/types.h"
 
@@ -102,21 +102,11 @@ typedef struct nt_stage_model {
     double creep_rate[NT_STAGE_CREEPS]; /* share of the way that is crept per period [-] */
     nt_stage stage;
 } nt_stage_model;
-/* Prepares one period [s] of the stage's motion. NT_E_RANGE or NT_E_NOT_FINITE for a period that is not above 0. */
-NT_API nt_status nt_stage_model_init(nt_stage_model *model, const nt_stage *stage, double period);
-/* The plays as they stand at this command on the way through the middle of the loop: P[u] = u. */
-NT_API NT_REALTIME void nt_stage_set_plays(nt_stage_state *state, double command);
-/* From now on this hysteresis [-], 0 to 0.4; the stage, last driven to `command` [m], stays where it is. */
-NT_API NT_REALTIME void nt_stage_set_hysteresis(nt_stage_model *model, nt_stage_state *state, double hysteresis,
-                                                double command);
 /* What pushes the stage back: f, which grows by k per metre of travel. */
 typedef struct nt_stage_load {
     double force;     /* f where the stage is [N] */
     double stiffness; /* k >= 0 [N/m] */
 } nt_stage_load;
-/* One period under a command x_s [m] and what the probe pulls with. */
-NT_API NT_REALTIME void nt_stage_step(const nt_stage_model *model, nt_stage_state *state, double command,
-                                      const nt_stage_load *load);
 
 /* --- hand: goes straight to a target over a time, then stays; a script is a sequence of targets. An impedance may hold
  *     the master besides, and an adversary may add any force (nt_hand in rig.h) --- */
@@ -133,15 +123,6 @@ typedef struct nt_hand_state {
     double rest;         /* where the hand's spring is at rest [m] */
     double random_force; /* of the adversary, now [N] */
 } nt_hand_state;
-/* Sets a new target from where the hand is now, so that nothing jumps. */
-NT_API void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target);
-/* Where the hand is now (duration unused): the force is the script's. */
-NT_API NT_REALTIME nt_hand_target nt_hand_now(const nt_hand_state *hand);
-/* The force that the hand means to apply along NT_Z, before its impedance: the script's and the adversary's [N]. */
-NT_API NT_REALTIME double nt_hand_effort(const nt_hand_state *hand);
-/* One period; the master stands at `position` [m]. noise may be NULL where random_force is 0. */
-NT_API NT_REALTIME void nt_hand_step(nt_hand_state *state, const nt_hand *hand, double position, double period,
-                                     nt_noise *noise);
 
 /* --- master, and the hand that holds it: (m + m_h) x'' + (b + b_h) x' + k_h (x - rest) + f_C sgn x' = f (Eq. 12), f =
  *     motor force + the hand's effort, held; between hard end stops. Exact, sticking and slipping too --- */
@@ -157,14 +138,6 @@ typedef struct nt_master_model {
     nt_master master;
     nt_hand hand;
 } nt_master_model;
-/* hand: NULL for a pure force. */
-NT_API nt_status nt_master_model_init(nt_master_model *model, const nt_master *master, const nt_hand *hand,
-                                      double period);
-/* force: of motor and hand's effort [N]; rest: of the hand's spring [m]. */
-NT_API NT_REALTIME void nt_master_step(const nt_master_model *model, nt_master_state *state, double force, double rest);
-/* f_m, what a force sensor between hand and master reads: effort - m_h x'' - b_h x' - k_h (x - rest) [N]. */
-NT_API NT_REALTIME double nt_master_grip_force(const nt_master_model *model, const nt_master_state *state,
-                                               double effort, double rest);
 
 /* --- sensor: gain 1, white noise, range, steps --- */
 typedef struct nt_sensor {
@@ -172,8 +145,6 @@ typedef struct nt_sensor {
     double resolution; /* step, 0 for none [unit of the value] */
     double range;      /* saturates at +- this [unit of the value] */
 } nt_sensor;
-/* Noise, then steps, then saturation. NaN in, NaN out. noise may be NULL where noise is 0. */
-NT_API NT_REALTIME double nt_sensor_read(const nt_sensor *sensor, double value, nt_noise *noise);
 
 #ifdef __cplusplus
 }

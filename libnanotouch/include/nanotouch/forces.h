@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Non-contact forces between a tip and a flat, at gap h of the undeformed bodies (paper, Eq. 1, corrected:
- * docs/errata.md; in liquid: docs/forces.md). Each law returns {U, F, k, a = 0}: U is 0 at infinite gap, F = -dU/dh,
+ * docs/evidence/errata.md; in liquid: docs/forces.md). Each law returns {U, F, k, a = 0}: U is 0 at infinite gap, F = -dU/dh,
  * k = -dF/dh. Below minimum_gap F stays at its value there and U goes on linearly. nt_x_eval_n is nt_x_eval over
  * arrays. All functions: thread-safe, real-time safe; NaN in, NaN out; an infinite gap gives 0. Parameters are checked
  * once by nt_x_check(). What adds, is added by the caller; erratum E5b says what may be added to a contact law. */
@@ -37,8 +37,6 @@ typedef struct nt_tip_angle {
     double sine, cosine; /* [-] */
     double log_cot;      /* ln cot(theta/2); infinite for theta = 0 [-] */
 } nt_tip_angle;
-/* Of a half-angle theta [rad], 0 .. 1.5. */
-NT_API nt_tip_angle nt_tip_angle_of(double half_angle);
 
 /* The same of a whole tip: a cone rounded by a sphere that touches it all around (Hamaker's sum, exact). */
 typedef struct nt_vdw_tip {
@@ -53,8 +51,6 @@ typedef struct nt_vdw_tip {
 NT_API nt_status nt_vdw_tip_check(const nt_vdw_tip *tip, nt_problem *problem);
 /* {U, F, k} of the whole tip at a gap [m]; a cone of height 0 is nt_vdw_eval. */
 NT_API nt_law_value nt_vdw_tip_eval(const nt_vdw_tip *tip, double gap);
-/* The same with the angle prepared, where one tip is evaluated often. */
-NT_API nt_law_value nt_vdw_tip_eval_with(const nt_vdw_tip *tip, const nt_tip_angle *angle, double gap);
 /* The same over arrays of gaps [m]. */
 NT_API void nt_vdw_tip_eval_n(const nt_vdw_tip *tip, const nt_strided *arrays);
 
@@ -128,9 +124,6 @@ typedef struct nt_electrostatic_tip {
 NT_API nt_status nt_electrostatic_tip_check(const nt_electrostatic_tip *tip, nt_problem *problem);
 /* {U, F, k} of sphere and cone at a gap [m]. */
 NT_API nt_law_value nt_electrostatic_tip_eval(const nt_electrostatic_tip *tip, double gap);
-/* The same with the angle prepared, where one tip is evaluated often. */
-NT_API nt_law_value nt_electrostatic_tip_eval_with(const nt_electrostatic_tip *tip, const nt_tip_angle *angle,
-                                                   double gap);
 /* The same over arrays of gaps [m]. */
 NT_API void nt_electrostatic_tip_eval_n(const nt_electrostatic_tip *tip, const nt_strided *arrays);
 

@@ -43,9 +43,6 @@ typedef struct nt_frame {
     uint32_t changes;          /* change counter of the description that holds in this tick */
 } nt_frame;
 
-/* Size and version set, numbers NaN, counters and bits 0. */
-NT_API NT_REALTIME nt_frame nt_frame_unknown(void);
-
 /* The writer's end. One thread publishes, beats, takes and answers (commands.h); one at a time describes. */
 typedef struct nt_frames nt_frames;
 
@@ -64,8 +61,6 @@ NT_API void nt_frames_beat(nt_frames *frames);
 /* Replaces the description, a text (JSON, TOML, ...), and counts the change. NT_E_CAPACITY, and the old one stays, if
  * it does not fit NT_DESCRIPTION_SIZE; NT_E_NO_MEMORY. From any one thread at a time. */
 NT_API nt_status nt_frames_describe(nt_frames *frames, const char *text);
-/* How often the description was set; for nt_frame.changes. */
-NT_API NT_REALTIME uint32_t nt_frames_changes(const nt_frames *frames);
 
 #ifdef __cplusplus
 }

@@ -7,8 +7,8 @@
 #ifndef NANOTOUCH_FRICTION_H
 #define NANOTOUCH_FRICTION_H
 
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/contact.h"
-#include "nanotouch/field.h"
 #include "nanotouch/material.h"
 
 #ifdef __cplusplus

@@ -47,16 +47,6 @@ NT_API void nt_hal_disarm(nt_hal *hal);
 /* Accepts NULL and a closed half. */
 NT_API void nt_hal_close(nt_hal *hal);
 
-/* Both halves as they were last read, as one sample of tick `tick` at time `now` [ns]. */
-NT_API NT_REALTIME void nt_hal_join(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now,
-                                    nt_sample *sample);
-/* Reads both halves as one sample of tick `tick` at time `now` [ns]; the first status that is not NT_OK. */
-NT_API NT_REALTIME nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64_t tick, int64_t now,
-                                           nt_sample *sample);
-/* The command to both halves at time `now` [ns]; the first status that is not NT_OK. */
-NT_API NT_REALTIME nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command,
-                                            nt_action *action);
-
 /* --- a half in a shared object, by its path (Linux, macOS, Windows; NT_E_UNSUPPORTED elsewhere) --- */
 
 typedef struct nt_module {

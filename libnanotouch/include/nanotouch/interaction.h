@@ -52,20 +52,12 @@ typedef struct nt_slide {
     int placed;  /* 1: it was somewhere */
 } nt_slide;
 
-/* The contact that friction knows at a place (NULL: a flat) and a gap [m]: radius and load inside; 0 without contact.
- * Of a sample that deforms without adhesion the load is Hertz' of that radius. */
-NT_API NT_REALTIME nt_friction_contact nt_interaction_friction_contact(const nt_plan *plan,
-                                                                       const nt_interaction_state *state,
-                                                                       const nt_place *place, double gap);
 /* Commits the way from where the tip was last to a pose, once per accepted step and after nt_interaction_advance. The
  * friction force on the tip is then slide->friction.force, beside Fx and Fy of nt_interaction_eval. Along the way the
  * contact is that of its end. At a pose that is not a number nothing changes; a plan without friction ends the history,
  * whatever plan it comes from: no force is left, and what was stored is heat. */
 NT_API NT_REALTIME void nt_interaction_slide(const nt_plan *plan, const nt_interaction_state *state, nt_slide *slide,
                                              const nt_pose *pose);
-/* The same at a place of the surface (NULL: a flat), for callers that have it. pose->z is then the gap [m]. */
-NT_API NT_REALTIME void nt_interaction_slide_gap(const nt_plan *plan, const nt_interaction_state *state,
-                                                 nt_slide *slide, const nt_place *place, const nt_pose *pose);
 
 /* Slow changes of the scene itself (wear, charging, contact ageing): from `plan` to `changed` at a pose. The history is
  * carried over, what changes in U at this pose is booked in state->port; at a pose that is not a number, nothing. */

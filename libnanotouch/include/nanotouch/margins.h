@@ -32,8 +32,6 @@ typedef struct nt_margins {
  * counts that, and the exact limits hold for the rig's hand, for none, and for a released handle of 0.1 kg; exact_limit
  * over loop_stiffness is then by how much alpha_f may grow. */
 NT_API nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness);
-/* loop_delay alone, a thousand times cheaper [s]. */
-NT_API double nt_margins_loop_delay(const nt_rig *rig, const nt_gains *gains);
 
 /* What a session is to be judged by: the smallest of its margins, each scaled so that 1 is the limit. */
 typedef struct nt_verdict {
@@ -77,9 +75,6 @@ typedef struct nt_sideways_margins {
     double coupled_margin;  /* all axes together: R1, or the exact limit while it sticks and while it slips, whichever
                                is less; never above those of each [-] */
 } nt_sideways_margins;
-/* along_z: the margins of the same settings and stiffness k [N/m] (nt_margins_judge). */
-NT_API nt_sideways_margins nt_margins_sideways(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
-                                               const nt_sideways_contact *contact, const nt_margins *along_z);
 /* The least of margin, exact limit and coupled margin: "R1 sideways", "exact sideways", "all axes". */
 NT_API nt_verdict nt_verdict_sideways(const nt_sideways_margins *margins);
 /* By how much more of its force along z a master of one axis feels, by its projection: a factor on alpha_f, >= 1. */

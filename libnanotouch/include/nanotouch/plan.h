@@ -5,10 +5,10 @@
 #ifndef NANOTOUCH_PLAN_H
 #define NANOTOUCH_PLAN_H
 
+#include "nanotouch/advanced/maugis_bank.h"
+#include "nanotouch/advanced/maugis_table.h"
+#include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/friction.h"
-#include "nanotouch/maugis_bank.h"
-#include "nanotouch/maugis_table.h"
-#include "nanotouch/plasticity.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"

@@ -5,7 +5,7 @@
 #ifndef NANOTOUCH_RHEOLOGY_H
 #define NANOTOUCH_RHEOLOGY_H
 
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_RIG_H
 #define NANOTOUCH_RIG_H
 
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/status.h"
 
 #ifdef __cplusplus
@@ -110,13 +110,6 @@ NT_API nt_rig nt_rig_with_steps(const nt_rig *rig);
 NT_API nt_stage nt_stage_open_loop(void);
 /* The same stage behind its own servo: steps of 10 nm, no hysteresis, no creep (Sec. IV-C). */
 NT_API nt_stage nt_stage_closed_loop(void);
-
-/* Effective mass of the cantilever's end, 0.24 m_c = k_c/(2 pi f_0)^2 [kg]. */
-NT_API double nt_probe_effective_mass(const nt_probe *probe);
-/* Largest deflection the probe can report, range x sensitivity [m]. */
-NT_API double nt_probe_deflection_range(const nt_probe *probe);
-/* Standard deviation of the force read-out: k_c S noise/6 [N]. */
-NT_API double nt_probe_force_noise(const nt_probe *probe);
 
 #ifdef __cplusplus
 }

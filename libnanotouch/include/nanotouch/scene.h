@@ -4,9 +4,9 @@
 #ifndef NANOTOUCH_SCENE_H
 #define NANOTOUCH_SCENE_H
 
+#include "nanotouch/advanced/field.h"
+#include "nanotouch/advanced/geometry.h"
 #include "nanotouch/contact.h"
-#include "nanotouch/field.h"
-#include "nanotouch/geometry.h"
 #include "nanotouch/terms.h"
 
 #ifdef __cplusplus
@@ -125,17 +125,6 @@ typedef enum nt_adhesion_source {
     NT_ADHESION_SOLID,   /* atoms against atoms: w, over the range of the atomic potential */
     NT_ADHESION_MENISCUS /* water bridge: w = 2 gamma_L over h0 = 2 r1, the Laplace pressure (erratum E12) */
 } nt_adhesion_source;
-/* Of a scene that has been checked: by its medium, its adhesion and whether a meniscus forms. */
-NT_API nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene);
-/* r1: as given, or by the Kelvin equation from humidity and temperature [m]. */
-NT_API double nt_scene_meniscus_radius(const nt_scene *scene);
-/* U between conductors that are connected, 0 for others and in a liquid, where ions screen it [V]. */
-NT_API double nt_scene_potential(const nt_scene *scene);
-/* The tip's shape, checked with the scene. */
-NT_API nt_shape nt_scene_shape(const nt_scene *scene);
-/* R, E*, w and sigma0 of the scene's adhesion source; work_of_adhesion [J/m^2] stands for the w of a scene that gives a
- * measured pull-off force (a plan finds it) and is not read otherwise. */
-NT_API nt_contact nt_scene_contact(const nt_scene *scene, double work_of_adhesion);
 
 #ifdef __cplusplus
 }

@@ -63,8 +63,6 @@ typedef struct nt_servo_equivalent {
 /* For a contact of this stiffness [N/m], >= 0, by the law that the settings choose. */
 NT_API nt_servo_equivalent nt_servo_equivalent_of(const nt_rig *rig, const nt_settings *settings,
                                                   double contact_stiffness);
-/* Largest amplitude at which the stage rings, whose command goes to and fro at a limit of speed [m/s] to [m]. */
-NT_API double nt_servo_ringing(const nt_servo_equivalent *equivalent, double speed);
 /* By what K_p and K_v of the paper's law may be multiplied until the stage oscillates by itself; infinite for the other
  * laws. Some milliseconds. */
 NT_API double nt_servo_stage_margin(const nt_rig *rig, const nt_settings *settings);

@@ -5,12 +5,12 @@
 #ifndef NANOTOUCH_SESSION_H
 #define NANOTOUCH_SESSION_H
 
+#include "nanotouch/advanced/hazard.h"
+#include "nanotouch/advanced/sim.h"
+#include "nanotouch/advanced/terrain.h"
 #include "nanotouch/commands.h"
 #include "nanotouch/control.h"
-#include "nanotouch/hazard.h"
 #include "nanotouch/plan.h"
-#include "nanotouch/sim.h"
-#include "nanotouch/terrain.h"
 
 #ifdef __cplusplus
 extern "C" {

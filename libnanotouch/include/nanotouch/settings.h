@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_SETTINGS_H
 #define NANOTOUCH_SETTINGS_H
 
-#include "nanotouch/field.h"
+#include "nanotouch/advanced/field.h"
 #include "nanotouch/rig.h"
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * RUN, HOLD, RETRACT, LATCHED: a pure function of sample, command and limits (the table in docs/safety.md). */
+ * RUN, HOLD, RETRACT, LATCHED: a pure function of sample, command and limits (the table in docs/evidence/safety.md). */
 #ifndef NANOTOUCH_SUPERVISOR_H
 #define NANOTOUCH_SUPERVISOR_H
 

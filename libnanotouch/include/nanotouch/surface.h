@@ -64,8 +64,6 @@ typedef struct nt_tip_shape {
     double radius;     /* R [m], 1e-10 .. 1e-3 */
     double half_angle; /* psi of the cone [rad], 0 .. 1.5 */
 } nt_tip_shape;
-/* Height of the tip's surface above its apex at a distance r >= 0 from its axis [m]. */
-NT_API double nt_tip_shape_height(const nt_tip_shape *tip, double r);
 /* Grey-scale dilation: dilated[j, i] = max over pixels p of heights[p] - tip(|p - (j, i)|): where the apex is at first
  * touch; between the pixels by a parabola where the body is smooth. dilated: nx * ny doubles, not the memory of
  * map->heights. O(nx ny k^2), k = the reach of the tip within the height range of the map. */

@@ -4,11 +4,11 @@
 #ifndef NANOTOUCH_TOUCH_H
 #define NANOTOUCH_TOUCH_H
 
-#include "nanotouch/passivity.h"
+#include "nanotouch/advanced/passivity.h"
+#include "nanotouch/advanced/stage_loop.h"
 #include "nanotouch/scaling.h"
 #include "nanotouch/servo.h"
 #include "nanotouch/settings.h"
-#include "nanotouch/stage_loop.h"
 #include "nanotouch/supervisor.h"
 
 #ifdef __cplusplus

@@ -7,7 +7,7 @@
 #ifndef NANOTOUCH_VISCOELASTIC_H
 #define NANOTOUCH_VISCOELASTIC_H
 
-#include "nanotouch/geometry.h"
+#include "nanotouch/advanced/geometry.h"
 #include "nanotouch/rheology.h"
 
 #ifdef __cplusplus

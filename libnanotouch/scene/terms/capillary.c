@@ -3,6 +3,7 @@
  * is the stress of the contact law, which forms and ruptures with it. Here is what the plan says of it. */
 #include <math.h>
 
+#include "scene/scene.h"
 #include "scene/terms/term.h"
 
 void nt_capillary_warn(nt_plan *plan, const nt_scene *scene)

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "scene/scene.h"
 #include "scene/terms/term.h"
 
 #define TABLED 2.0     /* the error of a table oscillates within its cells: what was sampled may be half of it */

@@ -2,6 +2,8 @@
  * The force of tip and sample at a potential difference, where both conduct and are connected. */
 #include <math.h>
 
+#include "forces/forces.h"
+#include "scene/scene.h"
 #include "scene/terms/term.h"
 
 static void prepare(void *law, const nt_scene *scene, double capture_gap)

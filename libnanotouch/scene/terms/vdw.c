@@ -3,6 +3,7 @@
  * where adhesion takes hold it keeps its value, and what it pulls there is taken out of w. */
 #include <math.h>
 
+#include "forces/forces.h"
 #include "scene/terms/term.h"
 
 /* Cone and punch have no gap over which a tail could act: their w stands for all of it. */

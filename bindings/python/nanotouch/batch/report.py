@@ -81,7 +81,7 @@ def write_report(
 
 
 def _spread_table(spreads: Sequence[Spread]) -> str:
-    headers = ("group", "quantity", "median", "quartiles", "5 % to 95 %", "curves", "without", "log-normal")
+    headers = ("group", "quantity", "median", "quartiles", "5 % to 95 %", "curves", "no value", "log-normal")
     cells = []
     for found in spreads:
         p5, p25, p50, p75, p95 = found.percentiles

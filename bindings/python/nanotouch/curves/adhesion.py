@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What kind of adhesion a retraction shows: none, one clean tear of the contact, or something that goes on holding."""
+"""What kind of adhesion a retraction shows: none, one clean tear of the contact, or something that does not detach."""
 
 from __future__ import annotations
 

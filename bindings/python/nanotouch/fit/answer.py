@@ -91,8 +91,7 @@ def answer_of(result: FitResult) -> Answer:
         separation = _separation(result)
         lines.append(("separation", f"work {with_sigma(*separation, 'J')}, below the baseline, over the base's travel"))
     if found.kind == "held":
-        lines.append(("adhesion", "force and work of separation alone: no work per area follows from what goes on "
-                                  "holding"))  # fmt: skip
+        lines.append(("adhesion", "force and work of separation alone: what does not detach gives no work per area"))
     modulus, said = _modulus(result)
     said += _relaxation(result)
     if result.choice:

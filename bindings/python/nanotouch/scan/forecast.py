@@ -137,7 +137,7 @@ class Forecast(NamedTuple):
             if math.isfinite(self.single_set_point)
             else "no set point has one alone: another free amplitude may"
         )
-        return [f"two motions at this set point: the lever may go over from one to the other; {alone}", told]
+        return [f"bistable at this set point: the lever may jump from one motion to the other; {alone}", told]
 
     def _hardest(self) -> str:
         if math.isfinite(self.peak_bound):

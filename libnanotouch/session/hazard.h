@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Private to the library: what hazard.h does not promise. */
+#ifndef NANOTOUCH_SESSION_HAZARD_PRIVATE_H
+#define NANOTOUCH_SESSION_HAZARD_PRIVATE_H
+
+#include "nanotouch/advanced/hazard.h"
+
+/* slope: of the surface where it is steepest, dilated by the tip [-]; clearance: of the tip above it where the tare is
+ * taken [m], infinite where none is. Rig and settings have been checked, the plan is
+ * for loads up to limits.force. Some milliseconds. */
+nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope,
+                       double clearance);
+
+#endif
