@@ -29,7 +29,14 @@ extensions = [
 html_theme = "furo"
 html_title = f"nanotouch {version}"
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["README.md", "examples/**", "build", "gallery/*.md5", "notebooks/*.md5", "decisions/README.md"]
+exclude_patterns = [
+    "README.md",
+    "examples/**",
+    "build",
+    "gallery/*.md5",
+    "notebooks/*.md5",
+    "evidence/decisions/README.md",
+]
 myst_enable_extensions = ["deflist", "colon_fence"]
 myst_heading_anchors = 4
 autodoc_member_order = "bysource"
@@ -85,12 +92,25 @@ def command_page() -> str:
     return "\n".join(parts)
 
 
+DECLARED = re.compile(
+    r"(?P<comment>/\*(?:(?!\*/).)*\*/\n)?(?P<text>NT_API[^;]*?\b(?P<name>nt_\w+)\s*\([^;]*;"
+    r"|typedef (?:struct|enum)\b[^{;]*\{.*?^\} (?P<type>nt_\w+);)",
+    re.DOTALL | re.MULTILINE,
+)
+
+
 def header_page() -> str:
-    """The reference of the C library: its public headers, which say all that there is to say."""
-    headers = sorted((ROOT / "libnanotouch/include/nanotouch").glob("*.h"))
-    parts = ["# The C headers\n", "A user includes `nanotouch/nanotouch.h`, or the one that is needed.\n"]
-    for header in headers:
-        parts.append(f"## {header.name}\n\n```{{literalinclude}} ../../{header.relative_to(ROOT)}\n:language: c\n```\n")
+    """The reference of the C library: a heading for each function and type, with what its header says of it."""
+    folder = ROOT / "libnanotouch/include/nanotouch"
+    parts = ["# The C library\n", "Include `nanotouch/nanotouch.h`, or the header that is needed.\n"]
+    for title, headers in (("", folder.glob("*.h")), (" (may change in any version)", folder.glob("advanced/*.h"))):
+        for header in sorted(headers):
+            found = list(DECLARED.finditer(header.read_text(encoding="utf-8")))
+            parts += [f"## {header.relative_to(folder.parent)}{title}\n"] * bool(found)
+            for one in found:
+                comment = re.sub(r"^/\*+ ?|\s*\*/$|^ \* ?", "", (one["comment"] or "").strip(), flags=re.MULTILINE)
+                parts.append(f"### {one['name'] or one['type']}\n\n```c\n{one['text']}\n```\n")
+                parts.append(f"```text\n{comment}\n```\n" if comment else "")
     return "\n".join(parts)
 
 

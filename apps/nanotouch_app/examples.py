@@ -77,6 +77,19 @@ FIRST = (
 ALL = ("nanotouch --help", "all commands")
 
 
+FIT = ("model", "radius", "spring_constant", "out")
+USUAL = {
+    "touch": ("surface", "mode", "scene", "duration", "out"),
+    "live": ("list", "task", "record", "film", "browser"),
+    "scan": ("mode", "scene", "pixels", "forecast", "out"),
+    "plan": ("relative_accuracy",),
+    "image": ("level", "grains", "scars", "out"),
+    "export": ("out",),
+    **dict.fromkeys(("fit", "map", "report", "review"), FIT),
+}
+"""options that ``--help`` shows first"""
+
+
 def table(lines: tuple[tuple[str, str], ...]) -> str:
     """The lines in two columns."""
     width = max(len(line) for line, _ in lines)

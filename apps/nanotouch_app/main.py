@@ -22,7 +22,7 @@ from nanotouch import guard
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app import examples
-from nanotouch_app.common import stop
+from nanotouch_app.common import removed, stop
 from nanotouch_app.common.guard import REFUSED, guarded, one_line
 from nanotouch_app.common.output import as_json
 
@@ -75,6 +75,13 @@ GROUPS = {
 }
 """what ``--help`` shows, which loads none of them: title; the package that holds the commands; what each does"""
 COMMANDS = tuple(command for _, commands in GROUPS.values() for command in commands)
+COMMON = {
+    "--verbose": "print all that was found, not only what most people need",
+    "--json": "print the results as JSON, SI; null: not known",
+    "--overwrite": "replace the results that --out holds already",
+    "--trusted": "read files in this process, without its guard (docs/security.md)",
+}
+"""options of all commands, taken wherever they stand"""
 EPILOG = """exit status:
   0    done
   1    done, and the answer is no (margins: refused; rig probe: too slow; fit: no curve), or nobody read it
@@ -110,12 +117,15 @@ class Parser(argparse.ArgumentParser):
 
     def unknown(self, words: list[str]) -> NoReturn:
         """Tell of what is no option or argument of this command."""
-        near = meant(words[0].partition("=")[0], list(self._option_string_actions))
+        option = words[0].partition("=")[0]
+        if option in removed.OPTIONS:
+            self.error(f"{option} is no option any more: {removed.OPTIONS[option]}")
+        near = meant(option, [*self._option_string_actions, *COMMON])
         self.error(f"unrecognized arguments: {' '.join(words)}{near}")
 
     def error(self, message: str) -> NoReturn:
         """Tell what is wrong, without the usage."""
-        self.exit(REFUSED, one_line(f"{self.prog}: error: {message} ({self.prog} --help tells more)") + "\n")
+        self.exit(REFUSED, one_line(f"{self.prog}: error: {message} (see {self.prog} --help)") + "\n")
 
 
 class GroupedParser(Parser):
@@ -128,6 +138,8 @@ class GroupedParser(Parser):
         for title, (_, commands) in GROUPS.items():
             rows = (f"  {name:13}{does}" for name, does in commands.items())
             parts.append("\n".join((f"{title}:", *rows)))
+        rows = (f"  {name:13}{words}" for name, words in COMMON.items())
+        parts.append("\n".join(("options of all commands:", *rows)))
         return "\n\n".join((*parts, f"nanotouch COMMAND --help shows options and examples.\n\n{EPILOG}\n"))
 
 
@@ -162,19 +174,25 @@ def _module(command: str) -> ModuleType:
 
 
 def _complete(parser: argparse.ArgumentParser, command: str) -> None:
-    """What all commands have: examples, and results as data."""
+    """What all commands have: examples, and where the options of all of them are."""
+    parts = [parser.epilog] if parser.epilog else []
     if not (parser.epilog or "").startswith("examples:"):
-        told = f"\n\n{parser.epilog}" if parser.epilog else ""
-        parser.epilog = f"examples:\n{examples.table(examples.EXAMPLES[command])}{told}"
+        parts.insert(0, f"examples:\n{examples.table(examples.EXAMPLES[command])}")
+    _usual_first(parser, examples.USUAL.get(command, ()))
+    parser.epilog = "\n\n".join((*parts, f"options of all commands (nanotouch --help): {', '.join(COMMON)}"))
     parser.formatter_class = Formatter
-    jobs = [job for action in parser._actions if isinstance(action, argparse._SubParsersAction)
-            for job in action.choices.values()]  # fmt: skip
-    for one in jobs or [parser]:
-        one.add_argument(
-            "--trusted", action="store_true", help="read files in this process, without its guard (docs/security.md)"
-        )
-    for one in jobs or [parser] * (command != "live"):  # a window has no results
-        one.add_argument("--json", action="store_true", help="print the results as JSON, SI; null: not known")
+
+
+def _usual_first(parser: argparse.ArgumentParser, names: Sequence[str]) -> None:
+    """What most people need, in a group of its own before the other options."""
+    if not names:
+        return
+    groups = parser._action_groups
+    usual = parser.add_argument_group("common options")
+    groups.insert(1, groups.pop())
+    for group in groups[2:]:
+        usual._group_actions += [one for one in group._group_actions if one.dest in names]
+        group._group_actions = [one for one in group._group_actions if one.dest not in names]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -198,7 +216,7 @@ def _run(arguments: list[str]) -> int:
     work = _module(args.command).run
     with stop.on_signals(), guard.by_default(not args.trusted):
         try:
-            if not getattr(args, "json", False):
+            if not args.json:
                 return int(work(args))
             with redirect_stdout(io.StringIO()):
                 status = int(work(args))
@@ -224,10 +242,18 @@ def _parsed(arguments: list[str]) -> argparse.Namespace:
     if "_ARGCOMPLETE" in os.environ:
         with suppress(ImportError):
             importlib.import_module("argcomplete").autocomplete(parser)
-    args, unknown = parser.parse_known_args(arguments)
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    common = {name for name in COMMON if name in arguments[:end]}
+    args, unknown = parser.parse_known_args([w for w in arguments[:end] if w not in COMMON] + arguments[end:])
     if unknown:
         commands: Any = next(action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
         commands.choices[args.command].unknown(unknown)
+    if "--overwrite" in common and "overwrite" not in args:
+        raise InvalidValue(f"--overwrite: nanotouch {args.command} writes no results")
+    if "--json" in common and args.command == "live":
+        raise InvalidValue("--json: a window has no results")
+    for name in COMMON:
+        setattr(args, name[2:], name in common)
     return args
 
 

@@ -69,7 +69,7 @@ def _lines(file: str) -> list[list[str]]:
         ["touch", "--scene", file, "--no-window", *out], ["touch", file, "--no-window", *out],
         ["scan", "--scene", file, *out], ["scan", file, *out], ["scan", "--scene", file, "--forecast"],
         ["live", file], ["live", file, "--browser", "--port", "0"], ["live", file, "--film", "film.gif"],
-        ["live", file, "--radius", "30nm"], ["touch", "--properties", file, "--youngs-modulus", "E", *out],
+        ["live", file, "--radius", "30nm"],
         ["margins", file, "--no-map", *out], ["plan", file], ["plan", "--surface", file], ["curve", "--scene", file],
         ["fit", file, "--scene", file, *out], ["fit", file, "--calibration", file, *out],
         ["indent", "--scene", file, *out], ["image", file, *out], ["image", file, "--config", file, *out],

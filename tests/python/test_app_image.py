@@ -37,7 +37,7 @@ def dotted(path: Path, noise: float = 0.1e-9) -> Path:
 
 def test_dots_from_file_to_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    assert main(["image", str(dotted(tmp_path / "dots.gwy")), "--grains", "--out", str(out)]) == 0
+    assert main(["image", str(dotted(tmp_path / "dots.gwy")), "--grains", "--verbose", "--out", str(out)]) == 0
     said = capsys.readouterr()
     assert said.err == ""
     assert {path.name for path in out.iterdir()} == {"image.json", "image.png", "image.gwy", "grains.csv"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Faults by name, channel and time; what Session does with them; the table of docs/safety.md has every kind."""
+"""Faults by name, channel and time; what Session does with them; docs/evidence/safety.md has every kind."""
 
 from __future__ import annotations
 

@@ -122,8 +122,6 @@ def test_options_that_would_do_nothing_are_refused(
     assert "--browser cannot be used with it" in _refused(capsys, "--film", str(film), "--browser")
     assert "--page cannot be used with it" in _refused(capsys, "--page", "a.html")
     assert "--port cannot be used with it" in _refused(capsys, "--port", "8000")
-    said = _refused(capsys, "a.gwy", "--youngs-modulus", "E", "--spring-constant", "1N/m")
-    assert "what is said of each place goes with an image: --spring-constant cannot" in said
     assert "no force curve: --radius cannot be used with it" in _refused(capsys, "mica_in_air", "--radius", "30nm")
     monkeypatch.setattr("nanotouch_app.live.command.record.is_recording", lambda path: True)
     played = tmp_path / "touch.mcap"

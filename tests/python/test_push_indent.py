@@ -83,7 +83,7 @@ def test_a_touch_tells_the_dents_that_it_leaves(tmp_path: Path, capsys: pytest.C
     (dent,) = json.loads((out / "summary.json").read_text())["dents"]
     assert dent["depth_m"] == record.read(out / "recording.mcap").dents[0].imprint.depth
     assert f"1, the deepest {1e9 * dent['depth_m']:.3g} nm" in said
-    assert "model error    not known" in said
+    assert "model error not known" in said
 
 
 @pytest.mark.parametrize(

@@ -85,7 +85,7 @@ def test_table_agrees_with_a_new_computation(tool: ModuleType, mu: float) -> Non
     curve = reference.lennard_jones(mu)
     d, P = curve.at(between)
     error = tool.distance(np.array([d, P, d, P]), truth)
-    # 1e-5: what the coarse mesh is off by (docs/lennard_jones.md)
+    # 1e-5: what the coarse mesh is off by (docs/evidence/lennard_jones.md)
     assert error < reference.table_error().independent + 1e-5
     assert reference.table_error().independent < 1e-4
 

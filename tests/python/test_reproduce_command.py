@@ -16,7 +16,7 @@ from nanotouch_app.studies.reproduce.statement import quantity
 
 pytest.importorskip("matplotlib")
 
-DOCS = Path(__file__).resolve().parents[2] / "docs" / "reproduction.md"
+DOCS = Path(__file__).resolve().parents[2] / "docs" / "evidence" / "reproduction.md"
 
 
 def read(path: Path) -> tuple[list[str], list[list[float]]]:

@@ -22,7 +22,7 @@ from nanotouch_app.studies.tradeoff.solvers import DMT, EXACT, HERTZ, JKR, JKR_T
 
 pytest.importorskip("matplotlib")
 
-DOCS = Path(__file__).resolve().parents[2] / "docs" / "accuracy.md"
+DOCS = Path(__file__).resolve().parents[2] / "docs" / "evidence" / "accuracy.md"
 COLUMNS = [
     (DMT, "load", "adhesive", False), (DMT, "load", "moderate", False), (DMT, "grips", "adhesive", False),
     (DMT, "grips", "moderate", False), (DMT, "grips", "moderate", True), (JKR, "load", "adhesive", False),

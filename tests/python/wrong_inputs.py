@@ -160,19 +160,6 @@ plan silicon_in_air --relative-accuracy -1%      | = -0.01 | 0 .. 0.5
 plan silicon_in_air --relative-accuracy nan      | 'nan' is not a number
 plan silicon_in_air --relative-accuracy 1nm      | the unit 'nm' | percent
 plan silicon_in_air --relative-accuracy ''       | relative-accuracy is empty
-plan silicon_in_air --force-floor 10       | no unit | 100nN
-plan silicon_in_air --force-floor -10pN    | force_floor = -1e-11 | 0 ..
-plan silicon_in_air --force-floor 10pm     | the unit 'pm' | pN
-plan silicon_in_air --force-floor 1e999N   | '1e999N' is not a finite number
-plan silicon_in_air --budget 0      | '0' | 1 .. 1e+09
-plan silicon_in_air --budget -1     | '-1' | 1 .. 1e+09
-plan silicon_in_air --budget -inf   | '-inf' | 1 .. 1e+09
-plan silicon_in_air --budget nan    | 'nan' | 1 .. 1e+09
-plan silicon_in_air --budget ten    | 'ten' | 1 .. 1e+09
-plan silicon_in_air --budget 2e9    | '2e9' | 1 .. 1e+09
-plan silicon_in_air --budget 1      | (--budget) = 1 | valid is 2 .. 1e+09
-plan silicon_in_air --budget        | --budget: expected one argument
-plan silicon_in_air --quantity x    | 'x' | force, stiffness, radius, folds
 touch --minimum-margin -1           | '-1' | 0 .. 1e+06
 touch --minimum-margin nan          | 'nan' | 0 .. 1e+06
 touch --minimum-margin inf          | 'inf' | 0 .. 1e+06

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes bindings/python/nanotouch/reference/lennard_jones.csv, and the table of convergence in docs/lennard_jones.md.
+"""Makes bindings/python/nanotouch/reference/lennard_jones.csv, and the table in docs/evidence/lennard_jones.md.
 
 Run: python generate.py table         writes the table, with its errors in the header
      python generate.py convergence   prints what finer meshes change

@@ -32,12 +32,12 @@ DEFAULT = "nanotouch-out"
 def add_options(group: Any, metavar: str = "DIR", what: str = "folder for the results") -> None:
     """Where the results go."""
     group.add_argument("--out", metavar=metavar, help=f"{what} (default: a new folder, {DEFAULT}, {DEFAULT}-2, ...)")
-    add_overwrite(group)
+    takes_overwrite(group)
 
 
-def add_overwrite(group: Any, option: str = "--out") -> None:
-    """The option without which nothing is replaced."""
-    group.add_argument("--overwrite", action="store_true", help=f"replace the results that {option} holds already")
+def takes_overwrite(group: Any) -> None:
+    """The command may be told ``--overwrite``, without which nothing is replaced."""
+    group.set_defaults(overwrite=False)
 
 
 def check_free(file: Path, args: Any, option: str = "--out") -> None:

@@ -46,7 +46,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--sensitivity", metavar="SENSITIVITY", help="of curves, in place of the file's, as 40nm/V")
     parser.add_argument("--channel", metavar="NAME", help="channel of an image or a map, for .gsf")
     parser.add_argument("--pixel-size", metavar="LENGTH", help="of an image that does not state it, for .gsf, as 10nm")
-    output.add_overwrite(parser)
+    output.takes_overwrite(parser)
     parser.set_defaults(run=run)
 
 

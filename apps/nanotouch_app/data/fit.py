@@ -143,11 +143,19 @@ def run(args: argparse.Namespace) -> int:
             fitting.stability(curve, result.model, branch=result.branch, **known).draw(save=out / "stability.png")
         if len(found) > 1:
             print(f"curve {args.index} of {len(found)}; --index N picks another")
-        print(result)
+        print(result if args.verbose else _in_short(result))
         if args.compare:
             print(fitting.choose_model(curve, _rivals(result.model), branch=result.branch, **known))
         print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return 0
+
+
+def _in_short(result: nt.fit.FitResult) -> str:
+    """The answer, and what speaks against it; all parameters, residuals and assumptions are told by ``--verbose``."""
+    lines = str(result).splitlines()
+    title = next(number for number, line in enumerate(lines) if line.startswith(f"{result.name}: "))
+    doubts = [line for line in lines[title + 1 :] if line.startswith("  note:") or "not determined" in line]
+    return "\n".join((*lines[: title + 1], *doubts))
 
 
 def _rivals(model: str) -> tuple[str, ...]:

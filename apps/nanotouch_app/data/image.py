@@ -117,7 +117,7 @@ def _one(args: argparse.Namespace, file: Path, out: Path) -> dict[str, Any]:
         facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
         sa, sq, sz = map(length, (rough.arithmetic, rough.rms, rough.peak_to_peak))
         print(f"roughness: Sa {sa}, Sq {sq}, peak to peak {sz}")
-        _tell_parameters(images.parameters(clean, mask), facts)
+        _tell_parameters(images.parameters(clean, mask), facts, args.verbose)
         _curves(args, clean, out)
         table = None if threshold is None else _grains(clean, threshold, args.pits)
         if table is not None:
@@ -154,12 +154,14 @@ def _line(args: argparse.Namespace) -> tuple[float, ...] | None:
     return tuple(parse_quantity(part, "m") for part in (*parts, "0nm")[:5])
 
 
-def _tell_parameters(found: dict[str, images.Parameter], facts: dict[str, Any]) -> None:
-    """All into the facts; those that nobody sees in the line of the roughness are printed, five to a line."""
+def _tell_parameters(found: dict[str, images.Parameter], facts: dict[str, Any], verbose: bool) -> None:
+    """All into the facts; with ``--verbose`` those beyond the line of the roughness are printed, five to a line."""
     facts["parameters"] = {
         symbol: {"value": parameter.value if math.isfinite(parameter.value) else None, "unit": parameter.unit}
         for symbol, parameter in found.items()
     }
+    if not verbose:
+        return
     shown = [f"{symbol} {_shown(parameter)}" for symbol, parameter in found.items() if symbol not in ("Sa", "Sq", "Sz")]
     for first in range(0, len(shown), 5):
         print("  " + "".join(f"{text:23}" for text in shown[first : first + 5]).rstrip())
@@ -220,7 +222,7 @@ def _repaired(
         warnings.simplefilter("ignore", UserWarning)
         if args.level != "none":
             image, levelled = images.level(image, args.level, mask)
-            print(levelled)
+            print(levelled if args.verbose else _in_short(levelled))
             facts["removed"] = {f"{n}_{step.method}_m": step.removed_range for n, step in enumerate(levelled.steps, 1)}
             facts["tilt"] = {"dz_dy": levelled.tilt[0], "dz_dx": levelled.tilt[1]}
             facts["terraces"] = [{"height_m": t.height, "share": t.share} for t in levelled.terraces]
@@ -235,6 +237,12 @@ def _repaired(
             print(speckles)
             facts["speckles"] = {"pixels": speckles.pixels, "largest_m": speckles.largest}
     return image
+
+
+def _in_short(levelled: images.LevelReport) -> str:
+    """What was done and what speaks against it, without each step and its rivals."""
+    first, *rest = str(levelled).splitlines()
+    return "\n".join((first, *(line for line in rest if line.strip().startswith("warning:"))))
 
 
 def _tip(text: str | None) -> images.Paraboloid | images.RoundedCone | None:

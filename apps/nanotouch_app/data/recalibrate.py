@@ -30,7 +30,7 @@ def add_parser(subparsers: Any) -> None:
             help=f"standard uncertainty of {what}",
         )  # fmt: skip
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="the table, a .csv")
-    output.add_overwrite(parser)
+    output.takes_overwrite(parser)
     parser.set_defaults(run=run)
 
 

@@ -53,7 +53,7 @@ def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser("samples", description=__doc__)
     parser.add_argument("--out", metavar="DIR", default=".", help="folder for the files (default: here)")
-    output.add_overwrite(parser)
+    output.takes_overwrite(parser)
 
 
 def run(args: argparse.Namespace) -> int:

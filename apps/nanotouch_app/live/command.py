@@ -15,7 +15,7 @@ from nanotouch import record
 from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography
 
-from nanotouch_app.common import output, properties, scenes, stop
+from nanotouch_app.common import output, scenes, stop
 from nanotouch_app.common.quantity import parse_quantity, whole_number
 from nanotouch_app.live import display, files, hands, real
 from nanotouch_app.live.board import TASKS
@@ -57,10 +57,9 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--radius", metavar="LENGTH", help="of the tip that measured CURVE, as 30nm")
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="of its lever, in place of the file's, as 8N/m")
     scenes.add_allow_code(parser)
-    properties.add_options(parser)
     parser.add_argument("--record", metavar="FILE.mcap", help="record the session to this file")
     parser.add_argument("--film", metavar="FILE", help="film a scripted touch instead: .gif, .mp4, or .png of its end")
-    output.add_overwrite(parser, "--record or --film")
+    output.takes_overwrite(parser)
     parser.add_argument("--hand", default="auto", metavar="NAME",
                         help="gamepad, spacemouse, auto (those that are connected) or none, beside mouse and keys "
                              "(default: %(default)s)")  # fmt: skip
@@ -114,8 +113,7 @@ def _checked(args: argparse.Namespace) -> bool:
                 raise InvalidValue(f"{option} {file}: {Path(file).parent} is not a folder")
             output.check_free(Path(file), args, option)
     hands.check_named(args.hand)
-    if not properties.given(args):
-        files.check_named(args.what)
+    files.check_named(args.what)
     is_recording = Path(args.what).is_file() and record.is_recording(args.what)
     _check_together(args, is_recording)
     return is_recording
@@ -161,7 +159,6 @@ def _check_together(args: argparse.Namespace, is_recording: bool) -> None:
         ("--film films a scripted touch", args.film is not None, ("task", "record", "browser")),
         (f"{args.what} is no force curve",
          args.what in PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"), CURVE),
-        ("what is said of each place goes with an image", bool(properties.given(args)), CURVE),
         ("without --browser a window shows it", not args.browser, ("page", "port")),
     ):  # fmt: skip
         useless = [f"--{name.replace('_', '-')}" for name in others if getattr(args, name) not in (None, False)]
@@ -170,13 +167,12 @@ def _check_together(args: argparse.Namespace, is_recording: bool) -> None:
 
 
 def _subject(args: argparse.Namespace) -> Subject:
-    named = properties.surface_file(args, args.what, {}, None) if properties.given(args) else None
     radius, spring = (
         None if text is None else parse_quantity(text, unit)
         for text, unit in ((args.radius, "m"), (args.spring_constant, "N/m"))
     )
     with output.busy(f"reading {args.what}", 0.5) as told:
-        return files.of(args.what, radius, spring, named, told)
+        return files.of(args.what, radius, spring, None, told)
 
 
 def _film(args: argparse.Namespace) -> int:

@@ -25,7 +25,7 @@ def add_parser(subparsers: Any) -> None:
     parser: argparse.ArgumentParser = subparsers.add_parser("latency", description=__doc__)
     add_options(parser)
     parser.add_argument("--out", type=Path, metavar="FILE.png", help="also draw the histogram")
-    output.add_overwrite(parser)
+    output.takes_overwrite(parser)
 
 
 def add_options(parser: argparse.ArgumentParser, rate: str = "1kHz") -> None:

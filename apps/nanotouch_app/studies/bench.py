@@ -45,7 +45,7 @@ def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser("bench", description=__doc__)
     parser.add_argument("--out", type=Path, metavar="FILE.json", help="also write the figures as JSON")
-    output.add_overwrite(parser)
+    output.takes_overwrite(parser)
     parser.add_argument("--quick", action="store_true", help="few repetitions: rough figures")
 
 

@@ -22,10 +22,10 @@ from nanotouch.touch.session import MODES
 from nanotouch.units import in_words
 
 from nanotouch_app.common import output, properties, scenes
-from nanotouch_app.common.quantity import number, parse_quantity
+from nanotouch_app.common.quantity import parse_quantity
 from nanotouch_app.common.scenes import PAPER, PRESETS
 
-OPTIONS = {"demand.relative_accuracy": "--relative-accuracy", "demand.budget": "--budget"}
+ACCURACY = "demand.relative_accuracy"
 
 
 def add_parser(subparsers: Any) -> None:
@@ -35,32 +35,23 @@ def add_parser(subparsers: Any) -> None:
         description=__doc__,
         epilog="Exit status 2: the description is wrong, or the demand cannot be kept; the sentence says what can.",
     )
-    parser.add_argument("scene", metavar="SCENE", help=f"TOML file, or a preset: {', '.join(PRESETS + PAPER)}")
+    parser.add_argument(
+        "scene",
+        metavar="SCENE",
+        help=f"TOML file, whose [demand] may say more, or a preset: {', '.join(PRESETS + PAPER)}",
+    )
     parser.add_argument(
         "--relative-accuracy",
-        metavar="SHARE",
+        metavar="FRACTION",
         help="largest error, over the larger of quantity and pull-off: 1%%, 1e-6",
     )
-    parser.add_argument(
-        "--bound",
-        choices=("kept", "exact", "any"),
-        help="kept: no more than that (default); exact: every law in full; any: else the least there is, or none",
-    )
-    parser.add_argument("--force-floor", metavar="FORCE", help="forces below this cannot be felt, such as 10pN")
-    parser.add_argument(
-        "--quantity", choices=("force", "stiffness", "radius", "folds"), help="of what (default: force)"
-    )
-    parser.add_argument(
-        "--budget", type=number(1.0, 1e9), metavar="N", help="what an evaluation may cost, in Hertz evaluations"
-    )
     parser.add_argument("--image", metavar="IMAGE", help="plan over the surface of an AFM image or a map.nc")
-    properties.add_options(parser)
     parser.add_argument("--probe", action="store_true", help="tell what the rig's probe cannot resolve, too")
     parser.add_argument(
         "--c-header", metavar="FILE", help="write plan and touch step as constants of C in single precision"
     )
     parser.add_argument("--mode", choices=MODES, default="point", help="of that touch step (default: %(default)s)")
-    output.add_overwrite(parser, "--c-header")
+    output.takes_overwrite(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -72,22 +63,12 @@ def run(args: argparse.Namespace) -> int:
         surface = _surface(args, scene)
     if args.relative_accuracy is not None:
         demand["demand.relative_accuracy"] = parse_quantity(args.relative_accuracy, "")
-    if args.force_floor is not None:
-        demand["demand.force_floor"] = parse_quantity(args.force_floor, "N")
-    if args.quantity is not None:
-        demand["demand.quantity"] = args.quantity
-    if args.bound is not None:
-        demand["demand.bound"] = args.bound
-    if args.budget is not None:
-        demand["demand.budget"] = args.budget
     try:
         with output.busy("planning"):
             plan = nt.Plan.make(scene, demand, rig if args.probe else None, surface)
     except InvalidValue as refusal:
         sentence = str(refusal).removeprefix("plan: ")
-        for field, option in OPTIONS.items():
-            sentence = sentence.replace(f"{field} =", f"{field} ({option}) =")
-        raise InvalidValue(sentence) from refusal
+        raise InvalidValue(sentence.replace(f"{ACCURACY} =", f"{ACCURACY} (--relative-accuracy) =")) from refusal
     args.answer = plan.explain()
     if args.c_header is not None:
         _write_header(args, plan, rig, settings)

@@ -27,7 +27,7 @@ SIGMAS = 5.0  # of the lever's noise, that a load has to exceed
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser("indent", description=__doc__)
-    parser.add_argument("load", metavar="LOAD", help="the largest, as 100nN")
+    parser.add_argument("load", metavar="LOAD", help="the max, as 100nN")
     parser.add_argument("--scene", metavar="SCENE", help="TOML file with scene and rig, or a preset; adhesion and what "
                         "acts before contact are left out (default: a diamond tip of 20 nm on gold)")  # fmt: skip
     parser.add_argument("--yield-strength", metavar="STRESS", help="Y of the sample, as 0.35GPa, where the scene does "

@@ -126,7 +126,7 @@ def _felt(felt: margins.Felt) -> str:
         f"{felt.margins.loop_stiffness:.3g} N/m\n"
         f"energy         {energy * 1e3:.3g} mJ from the hand, {kept * 1e3:.3g} mJ kept by the loop, as read: a step "
         "of the master counts before the force answers it\n"
-        f"verdict: {'passive' if felt.is_passive else 'NOT PASSIVE'}; least margin {felt.margins.verdict}"
+        f"verdict: {'passive' if felt.is_passive else 'NOT PASSIVE'}; min margin {felt.margins.verdict}"
     )
 
 
@@ -154,7 +154,7 @@ def words(found: Margins, budget: Resolution, settings: nt.Settings, rig: nt.Rig
     lines = [f"{name:14s} {text}" for name, text in rows]
     lines += ["resolution:", *(f"  {line}" for line in str(budget).splitlines())]
     verdict = "armed" if found.refusal is None else f"REFUSED, {found.refusal}"
-    return "\n".join([*lines, f"verdict: {verdict}; least margin {found.verdict}"])
+    return "\n".join([*lines, f"verdict: {verdict}; min margin {found.verdict}"])
 
 
 def _decides(found: Margins) -> str:

@@ -32,11 +32,12 @@ NEXT = {
 
 
 def report(session: nt.Session, facts: dict[str, Any], what: str, args: argparse.Namespace) -> str:
-    """What a reader wants first; ``what`` names the surface."""
+    """What a reader wants first, in at most eight lines without warnings; ``what`` names the surface. All of it with
+    ``--verbose``."""
     rows = {
         "touched": _touched(session, facts, what),
-        "felt": _felt(session, facts),
-        "safe": _safe(session, facts),
+        "felt": _felt(session, facts) if args.verbose else _felt_in_short(session, facts),
+        "safe": _safe(session, facts) if args.verbose else _safe_in_short(session, facts),
         "warning": _warnings(session),
         "try next": _next(session, facts, args),
     }
@@ -65,10 +66,22 @@ def _felt(session: nt.Session, facts: dict[str, Any]) -> list[str]:
     return [
         f"snap-in        {summary.force(facts, 'snap_in')}",
         f"pull-off       {summary.force(facts, 'pull_off')}{expected}",
-        f"largest force  {facts['largest_force_N'] * 1e9:.1f} nN",
+        f"max force      {facts['largest_force_N'] * 1e9:.1f} nN",
         *_rubbed(session, facts),
         *_dents(facts),
         f"model error    {_bound(session.plan.bound)}",
+    ]
+
+
+def _felt_in_short(session: nt.Session, facts: dict[str, Any]) -> list[str]:
+    planned = facts["planned_pull_off_force_N"]
+    expected = f" (expected {planned * 1e9:.3g} nN)" if facts["pull_off_force_N"] is not None else ""
+    bound = session.plan.bound
+    model = "model error not known" if math.isnan(bound) else f"model error at most {100.0 * bound:.2g} %"
+    return [
+        f"snap-in {summary.force(facts, 'snap_in')}, pull-off {summary.force(facts, 'pull_off')}{expected}",
+        f"max force {facts['largest_force_N'] * 1e9:.1f} nN; {model}",
+        *_dents(facts),
     ]
 
 
@@ -115,6 +128,17 @@ def _safe(session: nt.Session, facts: dict[str, Any]) -> list[str]:
     return lines
 
 
+def _safe_in_short(session: nt.Session, facts: dict[str, Any]) -> list[str]:
+    promised, found = session.guarantee(), session.margins()
+    refused = [] if found.refusal is None else [f"NO: armed against the verdict, {found.refusal}"]
+    return [
+        *refused,
+        verdict(facts),
+        f"force bound {promised.force * 1e9:.4g} nN, whatever the hand does: the limit, and what a fast hand adds "
+        f"until the stop acts ({promised.reaction_time * 1e3:.2g} ms)",
+    ]
+
+
 def _failing(most: float) -> str:
     return "if one part fails: " + (
         f"at most {most * 1e9:.4g} nN" if math.isfinite(most) else "no bound, see --verbose"
@@ -152,8 +176,7 @@ def _next(session: nt.Session, facts: dict[str, Any], args: argparse.Namespace) 
     own = "" if session.mode == "point" else f" --mode {session.mode}"
     lines = [] if facts["touched"] else [f"a longer --duration than {facts['duration_s']:.3g} s: nothing was touched"]
     lines.append(f"{same} --mode {mode}    {does}")
-    lines.append(f"{same}{own} --verbose    models, error bounds and limits in full")
-    return lines
+    return lines if args.verbose else [*lines, f"{same}{own} --verbose    models, error bounds and limits in full"]
 
 
 def _same(args: argparse.Namespace) -> str:

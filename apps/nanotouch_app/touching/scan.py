@@ -190,7 +190,7 @@ def _write(
 def _force(peak: float | None) -> str:
     if peak is None:
         return ""
-    return f"largest force {in_words(peak, 'N', 3)}, " if peak > 0.0 else "no tap pushes on the sample, "
+    return f"max force {in_words(peak, 'N', 3)}, " if peak > 0.0 else "no tap pushes on the sample, "
 
 
 def _preset(what: str | None) -> str | None:
@@ -354,7 +354,7 @@ def draw(image: scan.Image, path: Any) -> None:
         ("Phase (degrees)", np.degrees(image.trace.phase)) if taps else ("Deflection (nm)", image.trace.signal * 1e9),
         ("Lateral force (nN)", image.trace.lateral * 1e9)
         if image.trace.lateral.any()
-        else ("Largest force (nN)", image.trace.peak_force * 1e9)
+        else ("Max force (nN)", image.trace.peak_force * 1e9)
         if not np.isnan(image.trace.peak_force).any()
         else ("Amplitude (nm)", image.trace.signal * 1e9),
     ]

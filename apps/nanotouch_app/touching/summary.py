@@ -86,7 +86,7 @@ def words(summary: dict[str, Any]) -> str:
         f"  scaling           alpha_p {summary['alpha_p']:.3g}, alpha_f {summary['alpha_f']:.3g}",
         f"  snap-in           {force(summary, 'snap_in')}",
         f"  pull-off          {force(summary, 'pull_off')}",
-        f"  largest force     {summary['largest_force_N'] * 1e9:.1f} nN",
+        f"  max force         {summary['largest_force_N'] * 1e9:.1f} nN",
         *_rubbed(summary["largest_sideways_force_N"]),
         f"  position tracking {_position(summary['position_tracking_rms_m'])}",
         f"  force tracking    {_tracking(summary)}",

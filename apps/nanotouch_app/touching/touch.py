@@ -23,8 +23,7 @@ from nanotouch.units import in_words
 from nanotouch_app import view
 from nanotouch_app.common import output, properties, scenes, stop, surfaces
 from nanotouch_app.common.quantity import number, parse_points, parse_quantity, whole_number
-from nanotouch_app.touching import loop, summary
-from nanotouch_app.touching import report as told
+from nanotouch_app.touching import loop, report, summary
 
 FILES = ("recording.mcap", "summary.json", "time.png", "force_gap.png", "line.png", "view.png")
 MOVING = ("scan", "topography")
@@ -69,10 +68,8 @@ def add_parser(subparsers: Any) -> None:
     how.add_argument("--duration", metavar="TIME", help="stretch the operator's script to this, as 20s")
     how.add_argument("--seed", type=whole_number(0, 2**64 - 1, "2^64 - 1"), default=1, metavar="N",
                      help="of the sensors' noise (default: %(default)s)")  # fmt: skip
-    properties.add_options(parser)
     results = parser.add_argument_group("results")
     output.add_options(results)
-    results.add_argument("--verbose", action="store_true", help="tell models, error bounds and limits in full, too")
     results.add_argument("--no-pictures", action="store_true", help="record and tell, but draw nothing")
     results.add_argument("--no-window", action="store_true", help="do not open the 3-D view where there is a display")
 
@@ -96,9 +93,9 @@ def run(args: argparse.Namespace) -> int:
         if session.halves.slave.real:
             output.say(_measured(session, recording))
         else:
-            output.say(
-                summary.words(facts) if args.verbose else told.report(session, facts, describe(topography), args)
-            )
+            if args.verbose:
+                output.say(summary.words(facts))
+            output.say(report.report(session, facts, describe(topography), args))
         print("".join(f"picture left out: {reason}\n" for reason in missing), end="")
         output.say(f"written to {out}/: {', '.join(written)}")
     if not args.no_window and view.has_display() and not session.halves.slave.real:
