@@ -57,7 +57,7 @@ def undocumented(header: Path) -> int:
 
 def main() -> int:
     """Check each header, and compile it as each language; return the number of failures."""
-    headers = sorted(INCLUDE.glob("nanotouch/*.h"))
+    headers = sorted(INCLUDE.glob("nanotouch/**/*.h"))
     failures = sum(undocumented(header) for header in headers)
     for header in headers:
         for language, standard in LANGUAGES:

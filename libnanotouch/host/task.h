@@ -6,7 +6,7 @@
 
 #include "host/text.h"
 #include "nanotouch/host.h"
-#include "nanotouch/random.h"
+#include "nanotouch/advanced/random.h"
 
 typedef struct nt_operator nt_operator;
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "host/task_push.h"
-#include "nanotouch/rod.h"
+#include "nanotouch/advanced/rod.h"
 
 static const nt_trainer *trainer_of(const nt_operator *op)
 {

@@ -255,7 +255,9 @@ def _contact(model: Any) -> Callable[..., Any]:
 
 
 def _cone_jkr(indentation: float, effective_modulus: float, work_of_adhesion: float, half_angle: float) -> Any:
-    return geometry.jkr(geometry.Shape("cone", half_angle=half_angle), indentation, effective_modulus, work_of_adhesion)
+    return geometry.jkr(
+        geometry.Shape("cone", half_angle=half_angle), indentation, effective_modulus, work_of_adhesion=work_of_adhesion
+    )
 
 
 _VDW = {"gap": 1e-9, "radius": 2e-8, "hamaker_constant": 1e-19, "roughness": 2e-10, "minimum_gap": 2e-10}

@@ -79,11 +79,11 @@ def pressed(lever: Lever) -> Value:
 
 
 def test_reference_lever() -> None:
-    found = calibrate.reference_lever(pressed(Lever(1e9)), pressed(Lever(0.6)), 0.6, 0.03)
+    found = calibrate.reference_lever(pressed(Lever(1e9)), pressed(Lever(0.6)), 0.6, stiffness_sigma=0.03)
     assert found.value == pytest.approx(0.3, rel=1e-3)
     assert found.sigma == pytest.approx(0.3 * 0.05, rel=0.02)
     with pytest.raises(InvalidValue, match="expected more"):
-        calibrate.reference_lever(Value(1.0, 0.01, ""), Value(0.9, 0.01, ""), 0.6, 0.03)
+        calibrate.reference_lever(Value(1.0, 0.01, ""), Value(0.9, 0.01, ""), 0.6, stiffness_sigma=0.03)
 
 
 @pytest.mark.parametrize("flag", ["emergency_stop", "limit_switch", "invalid", "saturated"])

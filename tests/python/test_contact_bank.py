@@ -49,8 +49,8 @@ def test_broadcasts() -> None:
     one = BANK.evaluate(2e-9, 40e-9, 70e9, 0.1, 5e8)
     assert type(one.F) is float
     assert grid.F[1, 1] == one.F
-    assert BANK.grip_indentation(np.array([20e-9, 40e-9]), 70e9, 0.1, 5e8).shape == (2,)
-    grip = BANK.grip_indentation(40e-9, 70e9, 0.1, 5e8)
+    assert BANK.grip_indentation(np.array([20e-9, 40e-9]), 70e9, 0.1, cohesive_stress=5e8).shape == (2,)
+    grip = BANK.grip_indentation(40e-9, 70e9, 0.1, cohesive_stress=5e8)
     assert BANK.evaluate(grip * 1.0001, 40e-9, 70e9, 0.1, 5e8).F == 0.0
     assert BANK.evaluate(grip * 0.9999, 40e-9, 70e9, 0.1, 5e8).F < 0.0
 

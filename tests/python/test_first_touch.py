@@ -21,7 +21,7 @@ def test_every_preset_may_be_armed_at_it(name: str) -> None:
     scene, rig = getattr(nt.presets, name)()
     plan, load = scene.plan(), scene.range.maximum_load
     pull_off, settings = plan.pull_off_force, nt.Settings.for_rig(rig)
-    alpha_f = margins.felt_alpha_f(rig, settings, plan, load)
+    alpha_f = margins.felt_alpha_f(rig, settings, plan, load=load)
     assert alpha_f >= settings.gains.alpha_f
     felt = alpha_f * pull_off
     whole = 2.0 * rig.master.max_force
@@ -42,7 +42,7 @@ def test_without_adhesion_the_load_fills_the_hand() -> None:
     )
     assert scene.plan().pull_off_force == 0.0
     settings, load = nt.Settings.for_rig(rig), 1e-6
-    assert margins.felt_alpha_f(rig, settings, scene.plan(), load) == pytest.approx(10.0 / load)
+    assert margins.felt_alpha_f(rig, settings, scene.plan(), load=load) == pytest.approx(10.0 / load)
 
 
 def test_where_the_loop_leaves_less_it_is_as_much_as_is_stable_and_calm() -> None:

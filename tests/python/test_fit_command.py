@@ -62,8 +62,8 @@ def test_scene_gives_tip_sample_and_adhesion(tmp_path: Path) -> None:
 def test_compares_laws_and_draws_stability(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = write_ibw_curve(tmp_path / "curve.ibw", known_curve())
     out = tmp_path / "out"
-    options = ["--model", "pyramid", "--verbose", "--half-angle", "25deg", "--known-to", "spring_constant=10", "--compare"]
-    options += ["--known-to", "half_angle=1deg"]
+    options = ["--model", "pyramid", "--half-angle", "25deg", "--known-to", "spring_constant=10", "--compare"]
+    options += ["--known-to", "half_angle=1deg", "--verbose"]
     assert main(["fit", str(file), *options, "--stability", "--out", str(out)]) == 0
     said = capsys.readouterr().out
     for part in (

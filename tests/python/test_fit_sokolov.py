@@ -59,12 +59,12 @@ def test_one_force_goes_through_both_springs() -> None:
 
 @pytest.mark.parametrize(("force", "alone", "together"), [(1e-9, 502e-9, 387e-9), (0.3e-9, 225e-9, 129e-9)])
 def test_the_bias_is_that_of_the_cell_in_liquid(force: float, alone: float, together: float) -> None:
-    bias = sokolov.series_bias(force, RADIUS, MODULUS, THICKNESS, PRESSURE)
+    bias = sokolov.series_bias(force, RADIUS, MODULUS, thickness=THICKNESS, pressure=PRESSURE)
     assert bias.series == pytest.approx(alone, rel=2e-3)
     assert bias.self_consistent == pytest.approx(together, rel=2e-3)
     assert bias.modulus == pytest.approx((alone / together) ** 1.5, rel=0.01)
     with pytest.raises(InvalidValue, match="thickness"):
-        sokolov.series_bias(force, RADIUS, MODULUS, -1.0, PRESSURE)
+        sokolov.series_bias(force, RADIUS, MODULUS, thickness=-1.0, pressure=PRESSURE)
 
 
 def test_it_is_found_by_its_name_and_tells_its_bias() -> None:

@@ -123,17 +123,17 @@ def test_broadcasting_and_types() -> None:
 def test_jkr_shapes() -> None:
     cone, w = Shape("cone", half_angle=0.6), 0.05
     last = geometry.jkr_pull_off_indentation(cone, 1e6, w)
-    forces = geometry.jkr(cone, np.linspace(last, -20 * last, 20001), 1e6, w).F
+    forces = geometry.jkr(cone, np.linspace(last, -20 * last, 20001), 1e6, work_of_adhesion=w).F
     assert forces.min() == pytest.approx(-54 * w**2 * math.tan(0.6) ** 3 / (math.pi * 1e6), rel=1e-6)
     assert -forces.min() == pytest.approx(geometry.jkr_pull_off_force(cone, 1e6, w), rel=1e-6)
-    assert geometry.jkr_indentation(cone, 0.0, 1e6, w) == pytest.approx(-8 * last, rel=1e-13)  # r = 4
-    assert math.isnan(geometry.jkr(cone, 1.0, 1e6, w, "unstable").F)
-    paraboloid = geometry.jkr(ROUND[0], 1e-9, E, w)
+    assert geometry.jkr_indentation(cone, 0.0, 1e6, work_of_adhesion=w) == pytest.approx(-8 * last, rel=1e-13)  # r = 4
+    assert math.isnan(geometry.jkr(cone, 1.0, 1e6, work_of_adhesion=w, branch="unstable").F)
+    paraboloid = geometry.jkr(ROUND[0], 1e-9, E, work_of_adhesion=w)
     assert paraboloid == contact.evaluate("jkr", 1e-9, Contact(20e-9, E, w))
     with pytest.raises(InvalidValue, match="not for sphere"):
-        geometry.jkr(ROUND[1], 1e-9, E, w)
+        geometry.jkr(ROUND[1], 1e-9, E, work_of_adhesion=w)
     with pytest.raises(InvalidValue, match="work_of_adhesion"):
-        geometry.jkr(cone, 1e-9, E, -1.0)
+        geometry.jkr(cone, 1e-9, E, work_of_adhesion=-1.0)
 
 
 def test_validity_reports() -> None:
@@ -158,14 +158,14 @@ def test_stage_displacement_balances(shape: Shape) -> None:
     found = geometry.stage_displacement(shape, D, 76.9e9, spring_constant=8.0, angle=0.2)
     np.testing.assert_allclose(found.indentation + math.cos(0.2) * found.deflection, np.maximum(D, 0), rtol=1e-13)
     np.testing.assert_allclose(8.0 * found.deflection, geometry.force(shape, found.indentation, 76.9e9), rtol=1e-13)
-    assert math.isnan(geometry.stage_displacement(shape, math.nan, E, 8.0).indentation)
+    assert math.isnan(geometry.stage_displacement(shape, math.nan, E, spring_constant=8.0).indentation)
 
 
 def test_equation_8_is_what_its_docstring_says() -> None:
     """Erratum E8, silicon, R = 30 nm: 0.18 of the solution at 1 nm, 0.10 at 20 nm."""
     tip, D = Shape("paraboloid", radius=30e-9), np.array([1e-9, 20e-9])
-    solved = geometry.stage_displacement(tip, D, 76.923e9, 8.0).indentation
-    ratio = geometry.stage_displacement_approximate(D, 30e-9, 76.923e9, 8.0) / solved
+    solved = geometry.stage_displacement(tip, D, 76.923e9, spring_constant=8.0).indentation
+    ratio = geometry.stage_displacement_approximate(D, 30e-9, 76.923e9, spring_constant=8.0) / solved
     np.testing.assert_allclose(ratio, [0.18, 0.10], atol=0.01)
 
 
@@ -201,8 +201,8 @@ def test_other_refusals() -> None:
     with pytest.raises(InvalidValue, match="effective_modulus"):
         geometry.force(ROUND[0], 1e-9, 0.0)
     with pytest.raises(InvalidValue, match="spring_constant"):
-        geometry.stage_displacement(ROUND[0], 1e-9, E, 0.0)
+        geometry.stage_displacement(ROUND[0], 1e-9, E, spring_constant=0.0)
     with pytest.raises(InvalidValue, match="angle"):
-        geometry.stage_displacement(ROUND[0], 1e-9, E, 1.0, angle=2.0)
+        geometry.stage_displacement(ROUND[0], 1e-9, E, spring_constant=1.0, angle=2.0)
     with pytest.raises(InvalidValue, match="branch"):
-        geometry.jkr(ROUND[0], 1e-9, E, 0.1, "sideways")  # type: ignore[arg-type]
+        geometry.jkr(ROUND[0], 1e-9, E, work_of_adhesion=0.1, branch="sideways")  # type: ignore[arg-type]

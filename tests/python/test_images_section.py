@@ -30,7 +30,7 @@ def plane(slope_x: float, slope_y: float) -> images.Topography:
 )
 @pytest.mark.parametrize("width", [0.0, 60e-9])
 def test_a_line_over_a_plane(start: tuple[float, float], end: tuple[float, float], width: float) -> None:
-    found = images.section(plane(0.3, -0.1), start, end, width)
+    found = images.section(plane(0.3, -0.1), start, end, width=width)
     length = float(np.hypot(end[0] - start[0], end[1] - start[1]))
     assert found.over[-1] == pytest.approx(length)
     assert np.diff(found.over).max() <= DX * 1.0001
@@ -44,9 +44,9 @@ def test_a_width_averages_across_the_line() -> None:
     heights = np.zeros((NY, NX))
     heights[:, 40:50] = 5e-9
     image = images.Topography(heights, (DY, DX))
-    along = images.section(image, (450e-9, 100e-9), (450e-9, 1000e-9), 200e-9)
+    along = images.section(image, (450e-9, 100e-9), (450e-9, 1000e-9), width=200e-9)
     assert along.values == pytest.approx(5e-9 * 10 / 21, rel=0.05)
-    across = images.section(image, (5e-9, 600e-9), (895e-9, 600e-9), 200e-9)
+    across = images.section(image, (5e-9, 600e-9), (895e-9, 600e-9), width=200e-9)
     assert across.values.max() == pytest.approx(5e-9)
 
 
@@ -61,7 +61,7 @@ def test_what_is_refused() -> None:
         with pytest.raises(InvalidValue, match=message):
             images.section(image, *line)
     with pytest.raises(InvalidValue, match="width"):
-        images.section(image, (0.0, 0.0), (1e-7, 0.0), -1e-9)
+        images.section(image, (0.0, 0.0), (1e-7, 0.0), width=-1e-9)
     with pytest.raises(InvalidValue, match="bins"):
         images.histogram(image, 1)
     with pytest.raises(InvalidValue, match="all are equal"):

@@ -26,10 +26,10 @@ def test_forces_on_a_slope_balance() -> None:
         slope, adhesion = rng.uniform(0.1, 1.0), rng.uniform(0.0, 2.0)
         mu = rng.uniform(0.02, min(0.5, 0.95 * math.sqrt(math.cos(slope) / (math.cos(slope) + adhesion))))
         up, down = (balance(slope, mu, 1.0, adhesion, way) for way in (1.0, -1.0))
-        width, offset = lateral.slope_forces(slope, mu, 1.0, adhesion)
+        width, offset = lateral.slope_forces(slope, mu, 1.0, adhesion=adhesion)
         assert width == pytest.approx(0.5 * (up - down), rel=1e-9)
         assert offset == pytest.approx(0.5 * (up + down), rel=1e-9)
-        found = lateral.wedge(slope, (width / 3.0, 0.0), (offset / 3.0, 0.0), (1.0, 0.0), (adhesion, 0.0))
+        found = lateral.wedge(slope, (width / 3.0, 0.0), (offset / 3.0, 0.0), load=(1.0, 0.0), adhesion=(adhesion, 0.0))
         assert found.factor == pytest.approx(3.0, rel=1e-9)
         assert found.coefficient == pytest.approx(mu, rel=1e-9)
 
@@ -37,12 +37,13 @@ def test_forces_on_a_slope_balance() -> None:
 def test_the_sigma_of_a_calibration_is_its_scatter() -> None:
     """2000 noisy measurements: 68.3 % lie within a sigma, by 4 standard errors of that share (0.042) on either side."""
     rng, slope, sigma = np.random.default_rng(5), 0.62, (2e-4, 3e-4, 1e-10, 0.5e-10)
-    width, offset = lateral.slope_forces(slope, 0.15, 20e-9, 5e-9)
+    width, offset = lateral.slope_forces(slope, 0.15, 20e-9, adhesion=5e-9)
     truth = np.array([width / 2e-7, offset / 2e-7, 20e-9, 5e-9])
     inside = []
     for _ in range(2000):
         seen = truth + np.array(sigma) * rng.normal(size=4)
-        found = lateral.wedge(slope, *((float(value), s) for value, s in zip(seen, sigma, strict=True)))
+        half, off_centre, load, adhesion = ((float(value), s) for value, s in zip(seen, sigma, strict=True))
+        found = lateral.wedge(slope, half, off_centre, load=load, adhesion=adhesion)
         off = found.factor - 2e-7, found.coefficient - 0.15
         inside.append([abs(off[0]) < found.factor_sigma, abs(off[1]) < found.coefficient_sigma])
     assert np.mean(inside, axis=0) == pytest.approx([0.683, 0.683], abs=0.042)
@@ -52,7 +53,9 @@ def test_the_sigma_of_a_calibration_is_its_scatter() -> None:
 def test_the_half_width_of_a_simulated_loop_is_friction(seed: int) -> None:
     """Within 5 %, with sticking turns, an offset, a slope and noise of a tenth."""
     rng = np.random.default_rng(seed)
-    law = nt.Friction(friction.effective_shear_modulus(135e9, 0.35, 3e9, 0.4), 0.05, shear_strength=20e6)
+    law = nt.Friction(
+        friction.effective_shear_modulus(135e9, 0.35, 3e9, sample_poisson_ratio=0.4), 0.05, shear_strength=20e6
+    )
     x = np.linspace(0.0, rng.uniform(5e-9, 100e-9), 256)
     ways = np.concatenate([x, x[::-1], x, x[::-1]])
     force = -law.run(ways, 0.0, 3e-9, 0.0).force_x
@@ -75,7 +78,7 @@ def test_friction_along_the_lever_reads_as_load() -> None:
 
     for measured in ("deflection", "angle"):
         load, rubbed = bent(lambda x: length - x, measured), bent(lambda _: height, measured)
-        assert lateral.seen_as_load(1.0, height, length, measured) == pytest.approx(rubbed / load, rel=1e-10)  # type: ignore[arg-type]
+        assert lateral.seen_as_load(1.0, height, length, measured=measured) == pytest.approx(rubbed / load, rel=1e-10)  # type: ignore[arg-type]
 
 
 def test_what_is_no_loop_and_no_slope_is_refused() -> None:
@@ -85,9 +88,9 @@ def test_what_is_no_loop_and_no_slope_is_refused() -> None:
     with pytest.raises(InvalidValue, match="rising"):
         lateral.loop(x[::-1], x + 1.0, x)
     with pytest.raises(InvalidValue, match=r"slope = 2 rad"):
-        lateral.wedge(2.0, (1.0, 0.0), (1.0, 0.0), (1.0, 0.0))
+        lateral.wedge(2.0, (1.0, 0.0), (1.0, 0.0), load=(1.0, 0.0))
     with pytest.raises(InvalidValue, match=r"offset over half-width = 0\.1"):
-        lateral.wedge(0.6, (1.0, 0.0), (0.1, 0.0), (1.0, 0.0))
+        lateral.wedge(0.6, (1.0, 0.0), (0.1, 0.0), load=(1.0, 0.0))
     with pytest.raises(InvalidValue, match="does not slide up"):
         lateral.slope_forces(1.4, 0.5, 1e-9)
 
@@ -174,7 +177,7 @@ def test_measured_loops_give_friction_back() -> None:
     """200 sets of 8 simulated loops, with noise of a tenth, sticking turns and an offset: loops, then the fit. 95 %
     intervals hold the truth in 95 % less 4 standard errors of that share, 0.062."""
     rng, contact = np.random.default_rng(4), nt.Contact(radius=20e-9, effective_modulus=5e9, work_of_adhesion=0.05)
-    shear = friction.effective_shear_modulus(135e9, 0.35, 3e9, 0.4)
+    shear = friction.effective_shear_modulus(135e9, 0.35, 3e9, sample_poisson_ratio=0.4)
     truth = nt.Friction(shear, 0.02, shear_strength=30e6, coefficient=0.12)
     law = nt.contact.evaluate("jkr", np.linspace(0.05e-9, 2.5e-9, 8), contact)
     inner, x = friction.compressive_load("jkr", law, contact), np.linspace(0.0, 20e-9, 256)

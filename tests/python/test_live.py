@@ -287,7 +287,7 @@ def test_a_display_that_does_not_answer_is_given_up(monkeypatch: pytest.MonkeyPa
 
 def test_forces_are_scaled_as_in_a_first_touch(host: Host) -> None:
     scene, rig = nt.presets.silicon_in_air()
-    wanted = nt.margins.felt_alpha_f(rig, nt.Settings.for_rig(rig), scene.plan(), scene.range.maximum_load)
+    wanted = nt.margins.felt_alpha_f(rig, nt.Settings.for_rig(rig), scene.plan(), load=scene.range.maximum_load)
     assert host.session.settings.gains.alpha_f == pytest.approx(wanted)
     assert wanted * scene.plan().pull_off_force >= 0.1  # [N]: felt
 

@@ -150,7 +150,7 @@ def test_pull_off_follows_the_dent() -> None:
         (lambda: Specimen(FLAT, PITCH, indentation=GOLD).indent(1e-9, 1e-9, 100e-9), "ridge"),
         (lambda: Specimen(FLAT, 5e-9, indentation=GOLD).indent(500e-9, 500e-9, 100e-9), "6 pixels"),
         (lambda: Event.from_dict({"load": 1e-7, "force": 1e-7}), "after, before, .* force, .* missing or unknown"),
-        (lambda: nt.plasticity.worn_volume(1e-4, -1.0, 1.0, 1e9), "load"),
+        (lambda: nt.plasticity.worn_volume(1e-4, -1.0, 1.0, hardness=1e9), "load"),
         (lambda: nt.plasticity.worn_flat(0.0, 1e-27), "radius"),
     ],
 )

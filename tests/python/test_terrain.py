@@ -13,7 +13,7 @@ from nanotouch.scene.plan import Reach, make_terrain
 
 SCENE = nt.Scene()
 BODY = nt.Surface.touched_by(SCENE, surface.dots(pixels=64))
-TERRAIN = make_terrain(SCENE, Demand(), None, BODY)
+TERRAIN = make_terrain(SCENE, Demand(), None, surface=BODY)
 PATH = [(30e-9, 100e-9), (400e-9, 350e-9), (450e-9, 20e-9)]
 
 
@@ -21,7 +21,7 @@ def test_the_tip_is_given_once() -> None:
     assert (BODY.tip_radius, BODY.tip_half_angle) == (SCENE.tip.radius, SCENE.tip.half_angle)
     sharp = nt.Scene(tip={"radius": 5e-9})
     with pytest.raises(InvalidValue, match=r"tip\.radius = 5e-09 m: valid is 2e-08"):
-        make_terrain(sharp, Demand(), None, BODY)
+        make_terrain(sharp, Demand(), None, surface=BODY)
 
 
 def test_reach_along_a_path_bounds_dense_samples() -> None:
@@ -48,7 +48,7 @@ def test_reach_of_all_is_more_than_of_a_part() -> None:
 
 
 def test_a_flat_has_a_plan_and_no_relief() -> None:
-    flat = make_terrain(SCENE, Demand(), None, None)
+    flat = make_terrain(SCENE, Demand(), None, surface=None)
     assert Reach.along(flat, PATH) == (0.0, 0.0, 0.0, SCENE.tip.radius, SCENE.tip.radius, 0.0, 0.0, 0.0, 0.0)
     assert flat.plan.as_dict()["bound"] == SCENE.plan().bound
 

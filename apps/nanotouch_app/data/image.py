@@ -138,7 +138,7 @@ def _curves(args: argparse.Namespace, image: images.Topography, out: Path) -> No
         wanted["histogram"] = images.histogram(image)
     line = _line(args)
     if line is not None:
-        wanted["line"] = images.section(image, (line[0], line[1]), (line[2], line[3]), line[4])
+        wanted["line"] = images.section(image, (line[0], line[1]), (line[2], line[3]), width=line[4])
     for name, found in wanted.items():
         found.to_csv(out / f"{name}.csv")
         found.draw(save=out / f"{name}.png")

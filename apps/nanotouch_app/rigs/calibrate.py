@@ -147,7 +147,7 @@ def _lever(bench: Bench) -> None:
         input("put the reference lever below the tip, then press Enter ")
     (stiffness,) = bench.needed("lever_stiffness")
     bench.stiffness["reference lever"] = calibrate.reference_lever(
-        bench.hard, bench.press(), stiffness, stiffness * bench.args.lever_sigma
+        bench.hard, bench.press(), stiffness, stiffness_sigma=stiffness * bench.args.lever_sigma
     )
 
 

@@ -58,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
     settings.update_from_tables(tables)
     loop.close(settings, args)
     if not loop.says_scale(tables, args.force_range):
-        settings.gains.alpha_f = margins.felt_alpha_f(rig, settings, plan, scene.range.maximum_load)
+        settings.gains.alpha_f = margins.felt_alpha_f(rig, settings, plan, load=scene.range.maximum_load)
     path = CLEARANCE + INDENTATION_RANGE if args.path is None else parse_quantity(args.path, "m")
     stiffness = plan.maximum_stiffness
     found, budget = margins.compute(rig, settings, stiffness, args.mode), margins.resolution(rig, settings, path)

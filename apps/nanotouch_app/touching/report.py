@@ -79,8 +79,8 @@ def _felt_in_short(session: nt.Session, facts: dict[str, Any]) -> list[str]:
     bound = session.plan.bound
     model = "model error not known" if math.isnan(bound) else f"model error at most {100.0 * bound:.2g} %"
     return [
-        f"snap-in {summary.force(facts, 'snap_in')}, pull-off {summary.force(facts, 'pull_off')}{expected}",
-        f"max force {facts['largest_force_N'] * 1e9:.1f} nN; {model}",
+        f"snap-in {summary.force(facts, 'snap_in')}; max force {facts['largest_force_N'] * 1e9:.1f} nN, {model}",
+        f"pull-off {summary.force(facts, 'pull_off')}{expected}",
         *_dents(facts),
     ]
 

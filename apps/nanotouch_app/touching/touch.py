@@ -194,7 +194,7 @@ def _settings(
         closed = settings.copy()
         closed.gains.alpha_f = nt.Settings.for_rig(rig).gains.alpha_f
         loop.close(closed, args)
-        settings.gains.alpha_f = margins.felt_alpha_f(rig, closed, scaled.plan, scene.range.maximum_load)
+        settings.gains.alpha_f = margins.felt_alpha_f(rig, closed, scaled.plan, load=scene.range.maximum_load)
     return settings
 
 

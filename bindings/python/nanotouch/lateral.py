@@ -178,7 +178,7 @@ def crosstalk(normal: ArrayLike, lateral: ArrayLike, normal_per_lateral: float =
     return Crosstalk(slope, sigma, normal_per_lateral)
 
 
-def slope_forces(slope: float, coefficient: float, load: float, adhesion: float = 0.0) -> tuple[float, float]:
+def slope_forces(slope: float, coefficient: float, load: float, *, adhesion: float = 0.0) -> tuple[float, float]:
     """Half-width and offset of the loop [N] on a slope [rad] across the lever, under a load [N] of the lever and an
     adhesion [N] normal to the slope (Varenberg, Etsion, Halperin, Rev. Sci. Instrum. 74 (2003) 3362).
 
@@ -195,6 +195,7 @@ def wedge(
     slope: float,
     half_width: tuple[float, float],
     offset: tuple[float, float],
+    *,
     load: tuple[float, float],
     adhesion: tuple[float, float] = (0.0, 0.0),
 ) -> Wedge:
@@ -245,11 +246,11 @@ def _calibrated(slope: float, width: float, offset: float, load: float, adhesion
         least = 2.0 * math.sqrt(square * rest) / (load + adhesion * c)
         raise InvalidValue(f"offset over half-width = {offset / width:g}: valid on this slope is {least:.6g} and above")
     mu = 2.0 * rest / (line + math.sqrt(inside))
-    return slope_forces(slope, mu, load, adhesion)[0] / width, mu
+    return slope_forces(slope, mu, load, adhesion=adhesion)[0] / width, mu
 
 
 def seen_as_load(
-    friction: float, tip_height: float, length: float, measured: Literal["deflection", "angle"] = "angle"
+    friction: float, tip_height: float, length: float, *, measured: Literal["deflection", "angle"] = "angle"
 ) -> float:
     """What friction along a lever [N] reads as load [N]: 3 h/2 L of it in deflection, 2 h/L in angle (Euler's beam
     with the moment F h at its end)."""

@@ -91,7 +91,12 @@ class Bank:
         return Pairs(*(plain(column) for column in columns))
 
     def grip_indentation(
-        self, radius: ArrayLike, effective_modulus: ArrayLike, work_of_adhesion: ArrayLike, cohesive_stress: ArrayLike
+        self,
+        radius: ArrayLike,
+        effective_modulus: ArrayLike,
+        work_of_adhesion: ArrayLike,
+        *,
+        cohesive_stress: ArrayLike,
     ) -> Any:
         """Where the stable branch ends under grips [m]."""
         contacts, shape = _contacts(0.0, radius, effective_modulus, work_of_adhesion, cohesive_stress)

@@ -129,7 +129,12 @@ def _adhesive(shape: Shape, effective_modulus: float, work_of_adhesion: float) -
 
 
 def jkr(
-    shape: Shape, indentation: ArrayLike, effective_modulus: float, work_of_adhesion: float, branch: Branch = "stable"
+    shape: Shape,
+    indentation: ArrayLike,
+    effective_modulus: float,
+    *,
+    work_of_adhesion: float,
+    branch: Branch = "stable",
 ) -> LawValue:
     """JKR adhesion of a paraboloid, cone (Maugis, Barquins 1983) or punch (Kendall 1971) at an indentation [m].
 
@@ -141,7 +146,7 @@ def jkr(
 
 
 def jkr_indentation(
-    shape: Shape, force: ArrayLike, effective_modulus: float, work_of_adhesion: float, branch: Branch = "stable"
+    shape: Shape, force: ArrayLike, effective_modulus: float, *, work_of_adhesion: float, branch: Branch = "stable"
 ) -> Any:
     """Indentation [m] at a force [N] with JKR adhesion; NaN below minus the pull-off force."""
     made = _adhesive(shape, effective_modulus, work_of_adhesion)
@@ -195,7 +200,7 @@ class Validity(NamedTuple):
     """:class:`Outside` flags, for arrays as integers; 0: within range"""
 
 
-def validity(shape: Shape, contact_radius: ArrayLike, indentation: ArrayLike, thickness: float = np.inf) -> Validity:
+def validity(shape: Shape, contact_radius: ArrayLike, indentation: ArrayLike, *, thickness: float = np.inf) -> Validity:
     """Judge contacts by the radius [m] and indentation [m] that a law gave, with adhesion or without.
 
     ``thickness`` is that of the sample [m]. A law gives a number outside its range, too; this tells.
@@ -226,7 +231,7 @@ class StageDisplacement(NamedTuple):
 
 
 def stage_displacement(
-    shape: Shape, displacement: ArrayLike, effective_modulus: ArrayLike, spring_constant: float, angle: float = 0.0
+    shape: Shape, displacement: ArrayLike, effective_modulus: ArrayLike, *, spring_constant: float, angle: float = 0.0
 ) -> StageDisplacement:
     """Indentation and deflection at a stage displacement Delta [m] beyond first touch (paper, Eq. 5-7; E6, E7).
 
@@ -242,7 +247,7 @@ def stage_displacement(
 
 
 def stage_displacement_approximate(
-    displacement: ArrayLike, radius: float, effective_modulus: float, spring_constant: float, angle: float = 0.0
+    displacement: ArrayLike, radius: float, effective_modulus: float, *, spring_constant: float, angle: float = 0.0
 ) -> Any:
     """Indentation [m] by the paper's Eq. 8: k_c Delta/(k_c + K cos(alpha) sqrt(2 Delta R)), of a sphere.
 

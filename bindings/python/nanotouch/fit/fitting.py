@@ -128,7 +128,7 @@ def fit_curve(
     if model == AUTO:
         size, reach = _size(tip, radius), cohesive_range if isinstance(cohesive_range, float) else ASSUMED_RANGE
         model, branch, choice = first_choice(
-            report, stiffness, size, reach, sharp=half_angle is not None, layer=thickness is not None,
+            report, stiffness, size, cohesive_range=reach, sharp=half_angle is not None, layer=thickness is not None,
             branch=branch,
         )  # fmt: skip
     chosen = find(model)
@@ -137,7 +137,7 @@ def fit_curve(
         what = Given(report, branch, window, _held(fixed or {}, contact_point), uncertainties, poisson_ratio)
         return _over_time(curve, chosen, TipSize(tip, radius, half_angle, thickness), what, assumptions)
     branch = branch or ("retract" if chosen.adhesive else "approach")
-    points = points_of(report, branch, chosen, window if window_of == "force" else None, curve.name)
+    points = points_of(report, branch, chosen, window=window if window_of == "force" else None, name=curve.name)
     held = _held(fixed or {}, contact_point)
     held |= layer_of(chosen, thickness, poisson_ratio, held)
     if chosen.has_range and cohesive_range != "free":

@@ -64,7 +64,7 @@ class Points:
         return replace(self, tear=None)
 
 
-def points_of(report: CurveReport, branch: Branch, model: Model, window: Window | None, name: str) -> Points:
+def points_of(report: CurveReport, branch: Branch, model: Model, *, window: Window | None, name: str) -> Points:
     """The points of a branch that a model can describe; window: limits of the force [N]."""
     measured = report.branches.get(branch)
     if measured is None:

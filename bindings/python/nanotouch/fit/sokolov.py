@@ -80,7 +80,9 @@ _TWO_THIRDS = np.cbrt(_brush(_TABLE)[0]) ** 2
 _LEFT = np.exp(-4.0 * _TABLE)
 
 
-def series_bias(force: float, radius: float, effective_modulus: float, thickness: float, pressure: float) -> SeriesBias:
+def series_bias(
+    force: float, radius: float, effective_modulus: float, *, thickness: float, pressure: float
+) -> SeriesBias:
     """What springs in series err by at a force [N], against :class:`~nanotouch.reference.Deformation` with that brush.
 
     Tip of `radius` [m]; E* [Pa]; brush of `thickness` T [m] and `pressure` kT/s^3 [Pa].
@@ -106,8 +108,8 @@ def spacing(pressure: float, temperature: float = ROOM) -> float:
 
 
 def _told(radius: float, values: dict[str, float], largest_force: float) -> str:
-    brush = values["brush_thickness"], values["brush_pressure"]
-    return str(series_bias(largest_force, radius, values["effective_modulus"], *brush))
+    thickness, pressure = values["brush_thickness"], values["brush_pressure"]
+    return str(series_bias(largest_force, radius, values["effective_modulus"], thickness=thickness, pressure=pressure))
 
 
 SOKOLOV = Model(

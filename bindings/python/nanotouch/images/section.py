@@ -60,7 +60,7 @@ class Section:
 
 
 def section(
-    topography: Topography, start: tuple[float, float], end: tuple[float, float], width: float = 0.0
+    topography: Topography, start: tuple[float, float], end: tuple[float, float], *, width: float = 0.0
 ) -> Section:
     """Heights along a straight line, interpolated between the pixels, as far apart as the pixels are.
 

@@ -112,7 +112,7 @@ class Rod:
 
 
 def nanowire(
-    length: float = 2e-6, radius: float = 100e-9, tip_radius: float = 20e-9, tip_half_angle: float = 0.26
+    length: float = 2e-6, radius: float = 100e-9, tip_radius: float = 20e-9, *, tip_half_angle: float = 0.26
 ) -> Rod:
     """A wire of zinc oxide on silica.
 

@@ -75,7 +75,7 @@ class Scratching:
         return Groove(*self._core.scratch(load))
 
 
-def worn_volume(coefficient: float, load: float, way: float, hardness: float) -> float:
+def worn_volume(coefficient: float, load: float, way: float, *, hardness: float) -> float:
     """Volume worn off [m^3] by a way [m] under a load [N]: K F s/H, H the hardness [Pa] (Archard 1953)."""
     for name, value, unit in (("coefficient", coefficient, ""), ("load", load, "N"), ("way", way, "m")):
         if not (np.isfinite(value) and value >= 0.0):

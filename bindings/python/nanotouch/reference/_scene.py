@@ -203,7 +203,9 @@ def _touch(scene: Scene, gaps: Floats, contact: contacts.Contact, capture: float
         )
         return np.asarray(geometry.evaluate(shape, -gaps, contact.effective_modulus).F)
     if _is_jkr(scene):
-        branch = geometry.jkr(_shape(scene), -gaps, contact.effective_modulus, contact.work_of_adhesion)
+        branch = geometry.jkr(
+            _shape(scene), -gaps, contact.effective_modulus, work_of_adhesion=contact.work_of_adhesion
+        )
     else:
         branch = contacts.evaluate("maugis", -gaps, contact)
     held = np.asarray(branch.F)

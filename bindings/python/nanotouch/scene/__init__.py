@@ -181,6 +181,7 @@ class Scene(SceneFields, core_type=_core.Scene):
         relative_accuracy: float | Demand = 0.01,
         force_floor: float = 0.0,
         quantity: Quantity = "force",
+        *,
         rig: Rig | None = None,
         budget: float | None = None,
         surface: Surface | None = None,

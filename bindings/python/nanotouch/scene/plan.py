@@ -48,7 +48,7 @@ class Plan:
             raise TypeError(f"rig must be a Rig, not {type(rig).__name__}")
         own = None if rig is None else rig.copy()
         with scene.naming_terms():
-            terrain = make_terrain(scene, wanted, own, surface)
+            terrain = make_terrain(scene, wanted, own, surface=surface)
         return cls(terrain.plan, (scene.copy(), wanted.copy(), own, surface))
 
     @property
@@ -240,7 +240,7 @@ def begins_attached(history: History) -> bool:
     return history == "retract"
 
 
-def make_terrain(scene: Scene, demand: Demand, rig: Rig | None, surface: Surface | None) -> _core.Terrain:
+def make_terrain(scene: Scene, demand: Demand, rig: Rig | None, *, surface: Surface | None) -> _core.Terrain:
     """Surface, effective radii, bank of tables and plan of a scene, each made once (docs/surface.md). A surface that no
     tip has dilated has no radii."""
     parts = (None, None, None) if surface is None else surface.parts

@@ -58,7 +58,9 @@ def margins_of(session: Session) -> Margins:
     if projected > 1.0 and amounts is not None:
         amounts = amounts.copy()
         amounts.gains.alpha_f *= projected
-    along_z = margins.of_own_law(session.rig, settings, amounts, session.plan.maximum_stiffness, session.mode)
+    along_z = margins.of_own_law(
+        session.rig, settings, amounts, contact_stiffness=session.plan.maximum_stiffness, mode=session.mode
+    )
     sideways = sideways_of(session)
     found = [(along_z.least, along_z.rule), (sideways.least, sideways.rule), session.core.tap]
     least, rule = min(found, key=lambda one: one[0])

@@ -333,7 +333,7 @@ def sensitivity(hard: Value, rig: Rig, *, position_sigma: float = 0.0, sample_st
     return Value(found, found * share, "m/V")
 
 
-def reference_lever(hard: Value, reference: Value, stiffness: float, stiffness_sigma: float) -> Value:
+def reference_lever(hard: Value, reference: Value, stiffness: float, *, stiffness_sigma: float) -> Value:
     """k_c from the slopes on a hard sample and on a lever of known stiffness: k_ref (c_ref/c_hard - 1) [N/m].
 
     Torii et al., Meas. Sci. Technol. 7 (1996) 179, with the point of contact at the end of that lever.

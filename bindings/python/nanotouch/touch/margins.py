@@ -127,7 +127,9 @@ def compute(rig: Rig, settings: Settings, contact_stiffness: float, mode: Mode =
     )
 
 
-def of_own_law(rig: Rig, settings: Settings, amounts: Settings | None, contact_stiffness: float, mode: Mode) -> Margins:
+def of_own_law(
+    rig: Rig, settings: Settings, amounts: Settings | None, *, contact_stiffness: float, mode: Mode
+) -> Margins:
     """Margins of a law of one's own, from the settings with which the default law does the same; NaN where there are
     none. The height servo does not ask the law."""
     if amounts is not None:
@@ -204,7 +206,7 @@ def heuristic_alpha_f(rig: Rig, span: ForceRange) -> float:
     return 2.0 * reach / (span.highest - span.lowest)
 
 
-def felt_alpha_f(rig: Rig, settings: Settings, plan: Plan, load: float) -> float:
+def felt_alpha_f(rig: Rig, settings: Settings, plan: Plan, *, load: float) -> float:
     """alpha_f at which the sample's pull-off is clearly felt, CLEARLY_FELT at the hand: that of a session that is told
     nothing about it.
 
@@ -303,7 +305,7 @@ def of_recording(recording: Recording) -> Felt:
     given = _middle(recording.parameter("alpha_f") * _held(recording.slave_force))
     hand = _middle(_hand_force(recording, rig, settings))
     return Felt(
-        margins=of_own_law(rig, settings, amounts, k, recording.metadata.get("mode", "point")),
+        margins=of_own_law(rig, settings, amounts, contact_stiffness=k, mode=recording.metadata.get("mode", "point")),
         contact_stiffness=k,
         felt_stiffness=gains.alpha_f * gains.alpha_p * k_eff,
         free_damping=_drag(recording, rig),

@@ -118,6 +118,7 @@ def settings_for_path(
     rig: Rig,
     relief: float = 0.0,
     clearance: float = 0.1e-6,
+    *,
     force_range: tuple[float, float] | None = None,
     load: float = math.inf,
 ) -> Settings:
@@ -136,7 +137,7 @@ def settings_for_path(
 
 
 def settings_with(
-    scene: Scene, rig: Rig, surface: Surface | None, relief: float, settings: Settings | None, options: Options
+    scene: Scene, rig: Rig, surface: Surface | None, *, relief: float, settings: Settings | None, options: Options
 ) -> Settings:
     """The settings that are given, or those for a path with this relief [m] up to the scene's largest load, with what
     the options say beside them; where neither says how forces are scaled, so that the sample's pull-off is felt."""
@@ -146,14 +147,14 @@ def settings_with(
     load = float(scene.range.maximum_load)
     is_scaled = settings is not None or force_range is not None or "alpha_f" in gains
     if settings is None:
-        settings = settings_for_path(rig, relief, options.get("clearance", 0.1e-6), force_range, load)
+        settings = settings_for_path(rig, relief, options.get("clearance", 0.1e-6), force_range=force_range, load=load)
     wanted = settings.copy()
     _choose(wanted, options.get("rate"), gains, options.get("delay", 0.0))
     choose_control(wanted, options.get("control", "default"))
     if not is_scaled:
         accuracy, bound = demanded(options)
         plan = scene.plan(accuracy, surface=surface, bound=bound)
-        wanted.gains.alpha_f = margins.felt_alpha_f(rig, wanted, plan, load)
+        wanted.gains.alpha_f = margins.felt_alpha_f(rig, wanted, plan, load=load)
     return wanted
 
 

@@ -97,7 +97,7 @@ class Session(Runs, Frozen):
         self.path = tuple(checked_path(mode, path, surface))
         heights = self.path_heights()[1]
         self.relief = float(np.ptp(heights))
-        wanted = settings_with(self._scene, self.rig, surface, self.relief, settings, options)
+        wanted = settings_with(self._scene, self.rig, surface, relief=self.relief, settings=settings, options=options)
         control = options.get("control", "default")
         self.control = choose_control(wanted, control)
         self._settings = wanted.frozen(FROZEN.format("settings"))
