@@ -237,14 +237,15 @@ def _of_option(message: str, args: argparse.Namespace) -> str:
 
 def _parsed(arguments: list[str]) -> argparse.Namespace:
     """The arguments; for a shell that asks what may come next, the answer instead."""
-    asked = os.environ.get("COMP_LINE", "").split()[1:2] if "_ARGCOMPLETE" in os.environ else arguments[:1]
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    common = {name for name in COMMON if name in arguments[:end]}
+    words = [word for word in arguments[:end] if word not in COMMON] + arguments[end:]
+    asked = os.environ.get("COMP_LINE", "").split()[1:2] if "_ARGCOMPLETE" in os.environ else words[:1]
     parser = build_parser([command for command in COMMANDS if asked == [command]])
     if "_ARGCOMPLETE" in os.environ:
         with suppress(ImportError):
             importlib.import_module("argcomplete").autocomplete(parser)
-    end = arguments.index("--") if "--" in arguments else len(arguments)
-    common = {name for name in COMMON if name in arguments[:end]}
-    args, unknown = parser.parse_known_args([w for w in arguments[:end] if w not in COMMON] + arguments[end:])
+    args, unknown = parser.parse_known_args(words)
     if unknown:
         commands: Any = next(action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
         commands.choices[args.command].unknown(unknown)
