@@ -61,7 +61,7 @@ def main() -> int:
     failures = sum(undocumented(header) for header in headers)
     for header in headers:
         for language, standard in LANGUAGES:
-            source = f'#include "nanotouch/{header.name}"\n'
+            source = f'#include "{header.relative_to(INCLUDE).as_posix()}"\n'
             command = [sys.argv[1], f"-std={standard}", *FLAGS, "-I", str(INCLUDE), "-x", language, "-"]
             failures += subprocess.run(command, input=source, text=True, check=False).returncode != 0
     print(f"{len(headers)} headers in {len(LANGUAGES)} languages: {failures} failures")

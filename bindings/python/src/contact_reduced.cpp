@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chapters.h"
+#include "nanotouch/advanced/contact_equilibrium.h"
 
 namespace
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // scene.h, rig.h, control.h: descriptions, through their tables of fields
 #include "descriptions.h"
+#include "nanotouch/advanced/scan.h"
 
 template <class T>
 static py::class_<Described<T>> bind_described(py::module_ &module, const char *name, const nt_field *fields, int count,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // frames.h, observer.h
 #include "frames.h"
+#include "nanotouch/advanced/observer.h"
 
 #include <algorithm>
 #include <optional>

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "chapters.h"
+#include "nanotouch/advanced/observer.h"
 
 template <class T, void (*close_handle)(T *)> struct End {
     T *handle = nullptr;

@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "descriptions.h"
+#include "nanotouch/advanced/scan.h"
 
 namespace
 {
@@ -132,8 +133,7 @@ void bind_scan(py::module_ &module)
     py::class_<nt_scanner>(module, "Scanner")
         .def(py::init(&make_scanner), py::arg("scan"), py::arg("rig"), py::arg("drive"), py::arg("plan"),
              py::keep_alive<1, 5>())
-        .def("strip", &strip, py::arg("first"), py::arg("seed"), py::arg("out").noconvert(),
-             py::arg("progress"))
+        .def("strip", &strip, py::arg("first"), py::arg("seed"), py::arg("out").noconvert(), py::arg("progress"))
         .def("peak_bound",
              [](const nt_scanner &self, double x, double y, double rise, double height) {
                  const nt_place place = nt_interaction_place(self.plan, x, y);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // balance.h, steady.h: steady tapping to a demanded accuracy
 #include "nanotouch/advanced/steady.h"
+#include "nanotouch/advanced/balance.h"
+#include "nanotouch/advanced/scan.h"
 
 #include <algorithm>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // view.h: what is drawn of a contact
+#include "nanotouch/advanced/view.h"
 #include "chapters.h"
 
 #include "descriptions.h"
