@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A line through a bow, a step or contact leaves more than noise in the means of its parts. At the near end of the free
- * part, level and tilt together are then known to three times that: what a parabola leaves there is 2.2 times its RMS,
- * and more in contact. */
+ * A line through a bow, a step or contact leaves more than noise in the means of its parts. Whatever it is may go on as
+ * a parabola does, which leaves 0.298 of its size RMS, and is (u^2 - 1/3) times it at u halves from the middle: tilt
+ * and level are known to what that makes at the deepest point. */
 #include "curves/straight.h"
 
 #include <math.h>
@@ -9,13 +9,15 @@
 #include "core/same_bits.h"
 
 enum { PARTS = 16, NEAR = 5 };
-static const double no_noise = 6.0;   /* times the variance of a part's mean */
-static const double surely = 3.0;     /* standard deviations of the bend */
+static const double no_noise = 6.0; /* times the variance of a part's mean */
+static const double surely = 3.0;   /* standard deviations of the bend */
+static const double of_parabola = 0.298;
 static const double outermost = 0.05; /* of the travel: the outer end of a branch */
 
 typedef struct parts {
     double mean[PARTS], variance; /* from the nearest outwards; of one of them */
     double half;                  /* of the length [m] */
+    double deepest;               /* u of the deepest point [-] */
 } parts;
 
 static int take(const nt_curve_branch *branch, parts *found)
@@ -35,19 +37,30 @@ static int take(const nt_curve_branch *branch, parts *found)
     const double white = fmax(branch->baseline.noise.white, branch->noise * branch->noise);
     found->variance = white * PARTS / (double)n + branch->baseline.noise.flicker;
     found->half = 0.5 * (branch->z[branch->count - 1] - branch->z[first]);
+    found->deepest = (branch->z[branch->count - 1] - branch->z[0]) / found->half - 1.0;
     return found->half > 0.0;
 }
 
-/* 1 where the parts are no line; level and tilt are doubted. */
-static int doubt(const parts *p, nt_curve_baseline *baseline)
+/* Mean square of the parts' means from `first` on [N^2]. */
+static double mean_square(const parts *p, int first)
 {
     double square = 0.0;
-    for (int part = 0; part < PARTS; part++)
-        square += p->mean[part] * p->mean[part] / PARTS;
+    for (int part = first; part < PARTS; part++)
+        square += p->mean[part] * p->mean[part] / (PARTS - first);
+    return square;
+}
+
+/* 1 where the parts are no line; level and tilt are doubted. What bends the nearest quarter alone is the contact's
+ * foot, which does not go on so. */
+static int doubt(const parts *p, nt_curve_baseline *baseline)
+{
+    const double square = mean_square(p, 0), outer = mean_square(p, PARTS / 4);
     if (square < no_noise * p->variance)
         return 0;
+    const int goes_on = outer > no_noise * p->variance;
+    const double there = (p->deepest * p->deepest - 1.0 / 3.0) / of_parabola, tilt = there / (p->deepest * p->half);
     baseline->force_variance += square;
-    baseline->slope_variance += 9.0 * square / (p->half * p->half);
+    baseline->slope_variance += goes_on ? tilt * tilt * outer : 3.0 * square / (p->half * p->half);
     return 1;
 }
 

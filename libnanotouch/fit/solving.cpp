@@ -35,6 +35,7 @@ constexpr double much_better = 0.7;    // ratio of residuals
 constexpr double moved = 0.5;          // of ln E*
 constexpr double gaussian = 1.96;      // half width of 95 %, in standard deviations
 constexpr double precise = 0.1823;     // ln 1.2: what 95 % of E* may be off by from noise and baseline
+constexpr double bent = 0.1;           // of the load
 constexpr double computed = 1e-9;      // noise over force of points in which nothing is to be weighed
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -328,13 +329,11 @@ void Solving::doubt_modulus()
     nt_fit_result &fit = solution_.fit;
     const nt_fit_options &options = solution_.options;
     const double point_noise = std::max(noise(), fit.residual_noise);
-    unsigned doubts = 0U;
     if (asks(options, NT_FIT_CONTACT_POINT, "contact_point"))
         compare_halves(points_, data_, point_noise, &solution_);
-    const bool known = fit.identifiable[NT_FIT_EFFECTIVE_MODULUS];
-    const bool imprecise = known && !(gaussian * noise_of_modulus() < precise);
-    if (imprecise)
-        doubts |= NT_FIT_IMPRECISE;
+    const bool known = fit.identifiable[NT_FIT_EFFECTIVE_MODULUS],
+               imprecise = known && (!(gaussian * noise_of_modulus() < precise) || is_bent());
+    unsigned doubts = imprecise ? unsigned(NT_FIT_IMPRECISE) : 0U;
     if (has_power(options)) {
         find_power(points_, data_, point_noise, &solution_);
         const bool is_good = known && !imprecise && !(solution_.flags & NT_FIT_MISFIT);
@@ -346,14 +345,20 @@ void Solving::doubt_modulus()
     solution_.flags |= doubts;
 }
 
+// Whether what bends the free part, going on, may make a tenth of the load at the deepest point: no tilt takes that up.
+bool Solving::is_bent() const
+{
+    return known_.tilt_sigma * std::fabs(data_.position[0] - known_.baseline_position) > bent * largest_;
+}
+
 // What noise and baseline leave of E*, relative: with the sensitivity known exactly.
 double Solving::noise_of_modulus() const
 {
-    const double (*covariance)[NT_FIT_PARAMETERS] = solution_.fit.covariance;
-    const double own = covariance[NT_FIT_SENSITIVITY][NT_FIT_SENSITIVITY],
-                 both = covariance[NT_FIT_EFFECTIVE_MODULUS][NT_FIT_SENSITIVITY],
-                 by_sensitivity = own > 0.0 && std::isfinite(own) ? both * both / own : 0.0;
-    const double variance = covariance[NT_FIT_EFFECTIVE_MODULUS][NT_FIT_EFFECTIVE_MODULUS] - by_sensitivity;
+    const double *of_modulus = solution_.fit.covariance[NT_FIT_EFFECTIVE_MODULUS],
+                 both = of_modulus[NT_FIT_SENSITIVITY];
+    const double own = solution_.fit.covariance[NT_FIT_SENSITIVITY][NT_FIT_SENSITIVITY];
+    const double variance =
+        of_modulus[NT_FIT_EFFECTIVE_MODULUS] - (own > 0.0 && std::isfinite(own) ? both * both / own : 0.0);
     return std::sqrt(std::max(variance, 0.0)) / solution_.fit.value[NT_FIT_EFFECTIVE_MODULUS];
 }
 

@@ -43,6 +43,7 @@ class Solving
     void judge();
     void doubt_modulus();
     double noise_of_modulus() const;
+    bool is_bent() const;
 
     const nt_fit_options &given_;
     const nt_fit_known &known_;
