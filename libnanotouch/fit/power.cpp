@@ -21,7 +21,6 @@ namespace
 
 constexpr double surely = 3.0;   // standard deviations of the power
 constexpr double matters = 0.05; // of the power: what it is off by moves E* by some 15 %
-constexpr double better = 3.0;   // chi^2 by which another tip must be, so that no noise decides
 constexpr long some = 60;        // means
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr int most = NT_FIT_PARAMETERS + 1;
@@ -140,7 +139,7 @@ bool is_rivalled(const nt_fit_solution &solution, const nt_fit_data &data)
         return false;
     options.model = rival_of(options.model);
     options.parameter[NT_FIT_EFFECTIVE_MODULUS].initial = not_a_number;
-    return chi_square(options, means.data(), &other) && other < own - better;
+    return chi_square(options, means.data(), &other) && other < own;
 }
 
 } // namespace nanotouch
