@@ -88,7 +88,7 @@ def held_still(session: Any, plot: Plot, d: Dice, judge: Judge) -> None:
     columns = session.advance(0.45, press)
     judge.watch(columns)
     if (columns["contact_radius"] > 0.0).all() and (columns["state"] == 0).all():
-        judge.calm(session, columns["tip_force"])
+        judge.calm(session, lambda seconds: session.advance(seconds, press)["tip_force"], columns["tip_force"])
 
 
 def fought(session: Any, plot: Plot, d: Dice, judge: Judge) -> None:
