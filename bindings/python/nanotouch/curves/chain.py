@@ -143,9 +143,7 @@ def _growing(found: list[Chain]) -> tuple[Chain, ...]:
     for chain in found:
         short = longest - chain.contour_length
         if short > _SURELY * np.hypot(longest_sigma, chain.contour_length_sigma):
-            nothing = dict.fromkeys(("contour_length", "contour_length_sigma", "segment_length",
-                                     "segment_length_sigma"), np.nan)  # fmt: skip
-            made.append(replace(chain, **nothing))
+            made.append(Chain(chain.rupture, np.nan, np.nan, np.nan, np.nan, chain.misfit, chain.points))
             continue
         if short > 0.0:
             sigma = float(np.hypot(chain.contour_length_sigma, short))

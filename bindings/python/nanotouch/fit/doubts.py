@@ -19,6 +19,9 @@ from .uncertainties import Uncertainties
 _WIDEST = 0.8  # contact radius over R: a sphere's force is then 7 % off a paraboloid's
 _THICK = 2.0  # contact radius over thickness up to which the laws of layers hold
 _MISFITS = {"calibration", "misfit", "uneven", "wrong_model"}  # what a sample that relaxes shows to an elastic law
+_OTHER_POWER = "the force rises with another power of the indentation than this law's"
+_IMPRECISE = "noise and baseline leave E* a 95 % interval of more than +-20 %: it counts as not determined"
+_LOST = ": other values fit as well, so that none of these is a result"
 _OF_THE_SAMPLE = 5  # places of the model's own parameters and the contact point; then the force offset
 
 
@@ -49,8 +52,8 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
     if "calibration" in flagged and not relaxes:
         notes.append(_calibration(solution, uncertainties))
         reason = "the curve disagrees with its calibration"
-    stiffness, stated = found["contact_stiffness"], options.spring_constant
     if "stiff" in flagged:
+        stiffness, stated = found["contact_stiffness"], options.spring_constant
         notes.append(
             f"the contact ({stiffness:.3g} N/m) is {times(stiffness / stated)} stiffer than the cantilever "
             f"({stated:.3g} N/m), whose own slope the curve shows: it hardly depends on the modulus"
@@ -73,17 +76,14 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
     if "uneven" in flagged and not relaxes:
         notes.append(_uneven(solution, identifiable.get("effective_modulus", True)))
     if "other_power" in flagged and not relaxes:
-        if "uneven" not in flagged:  # else the halves bound it
-            reason = "the force rises with another power of the indentation than this law's"
+        reason = reason if "uneven" in flagged else _OTHER_POWER  # the halves bound it
         notes.append(_power(setup, solution))
-    if "imprecise" in flagged:
-        notes.append("noise and baseline leave E* a 95 % interval of more than +-20 %: it counts as not determined")
+    notes += [_IMPRECISE] * ("imprecise" in flagged)
     if "wrong_model" in flagged:
         reason = "the model does not describe the curve"
         notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")
     if "not_converged" in flagged:
-        lost = "" if any(identifiable.values()) else ": other values fit as well, so that none of these is a result"
-        notes.append(f"the fit stopped before it converged{lost}")
+        notes.append("the fit stopped before it converged" + ("" if any(identifiable.values()) else _LOST))
     if setup.time is not None and relaxes:
         reason, identifiable = setup.time.reason, dict.fromkeys(identifiable, False)
     return Doubts(identifiable, notes, reason)

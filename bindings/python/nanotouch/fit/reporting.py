@@ -148,8 +148,7 @@ def make_result(
     if sample.poisson_ratio is not None and "effective_modulus" in table.values:
         _add_youngs_modulus(table, sample, uncertainties, notes, assumptions)
     bounds = {} if reason else _bounds(identifiable, solution, uncertainties, table)
-    if setup.model.remark is not None:
-        notes.append(setup.model.remark(setup.radius, table.values, float(points.force.max())))
+    notes += _remark(setup, table, float(points.force.max()))
     return FitResult(
         model=setup.model.name,
         title=setup.model.title or setup.model.name,
@@ -188,6 +187,11 @@ def make_result(
         units={names[i]: options.parameters[i][1] for i in names} | {"youngs_modulus": "Pa"},
         **{key: found[key] for key in _PLAIN},
     )
+
+
+def _remark(setup: Setup, table: Table, load: float) -> list[str]:
+    """What the model itself has to say."""
+    return [] if setup.model.remark is None else [setup.model.remark(setup.radius, table.values, load)]
 
 
 def _of_free(covariance: Floats, names: dict[int, str], free: list[int]) -> Floats:
