@@ -118,13 +118,11 @@ static void bound_pull_off(nt_curve_reading *reading)
 void nt_curve_doubt_straightness(nt_curve_reading *reading)
 {
     parts found;
-    nt_curve_branch *approach = &reading->approach, *retract = &reading->retract;
-    if (retract->count && take(retract, &found))
-        (void)doubt(&found, &retract->baseline);
+    nt_curve_branch *approach = &reading->approach;
     if (!approach->count || !take(approach, &found) || !doubt(&found, &approach->baseline))
         return;
     const double far = approach->z[approach->count - 1], near = approach->baseline.nearest;
     const int rises = nt_curve_baseline_at(&approach->baseline, near) > nt_curve_baseline_at(&approach->baseline, far);
-    if (retract->count && rises && bends_as_contact(&found))
+    if (reading->retract.count && rises && bends_as_contact(&found))
         bound_pull_off(reading);
 }

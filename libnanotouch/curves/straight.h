@@ -5,9 +5,9 @@
 
 #include "nanotouch/curves.h"
 
-/* Of both branches, over their last baselines. Where a free part is surely no line - a bow, a step, contact - its level
- * and tilt are as uncertain as what the line leaves. Where the approach's bends as contact does, nothing of it is free:
- * the free level lies between the outer ends of both branches, and the pull-off with it. */
+/* Of the approach, over its last baseline. Where its free part is surely no line - a bow, a step, contact - its level
+ * and tilt are as uncertain as what the line leaves. Where it bends as contact does, nothing of it is free: the free
+ * level lies between the outer ends of both branches, and the pull-off with it. */
 void nt_curve_doubt_straightness(nt_curve_reading *reading);
 
 #endif
