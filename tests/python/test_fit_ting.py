@@ -13,7 +13,9 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import fit
+from nanotouch.batch.groups import Spread
 from nanotouch.batch.methods import methods
+from nanotouch.batch.report import _histogram
 from nanotouch.curves import ForceCurve, Segment
 from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.fit.unified import unified_interval
@@ -273,6 +275,38 @@ def test_other_models_know_no_time() -> None:
     found = fit.fit_curve(curve_of(Sample(2e3, 0.0), noise=1e-11), "hertz", radius=RADIUS)
     with pytest.raises(InvalidValue, match="knows no time"):
         _ = found.rheology
+
+
+def test_what_is_not_fitted_over_time_refuses_these_models() -> None:
+    curve = curve_of(Sample(2e3, 0.2), 400, noise=1e-11)
+    position, force = -curve.segments[0].z, curve.segments[0].force
+    with pytest.raises(InvalidValue, match="over time: fit_curve"):
+        fit.fit_points(position, force, "ting_power", radius=RADIUS, spring_constant=STIFFNESS)
+    with pytest.raises(InvalidValue, match="not to windows"):
+        fit.stability(curve, "ting_power", radius=RADIUS)
+
+
+def test_arms_are_told_of_the_modulus_that_they_belong_to() -> None:
+    found = fit.fit_curve(with_pause(lambda t: 1e3 + 1.5e3 * np.exp(-t / 0.3), 0.0), "ting_sls", **HERE)
+    said = dict(found.answer.lines)["relaxation"]
+    assert said.startswith(f"E* at rest {found.show('effective_modulus')}; of E* {found.show('arm_modulus')} more")
+
+
+def test_a_curve_that_the_model_does_not_describe_determines_nothing() -> None:
+    curve = curve_of(Sample(2e3, 0.3), 400, noise=1e-11)
+    cut = 0.3 * float(curve.segments[0].force.max())
+    cut_off = [replace(part, force=np.minimum(part.force, cut), deflection=None) for part in curve.segments]
+    found = fit.fit_curve(replace(curve, segments=tuple(cut_off)), "ting_power", **HERE)
+    assert found.status == "misfit"
+    assert not any(found.identifiable.values())
+    assert "not determined: the model does not describe the curve" in str(found)
+
+
+@pytest.mark.parametrize("values", [[0.0, 0.1, 0.2], [0.0, 0.0, 0.0]])
+def test_a_histogram_of_curves_that_do_not_relax(values: list[float]) -> None:
+    pytest.importorskip("matplotlib")
+    found = Spread("", "exponent", "", np.array(values), 0, (0.0,) * 5, 0.1, 1.1, True)
+    assert _histogram("exponent", [found]).axes[0].get_xscale() == "linear"  # a beta of 0 has no logarithm
 
 
 def test_map_of_the_exponent_beside_the_modulus() -> None:

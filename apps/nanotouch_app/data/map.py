@@ -127,7 +127,7 @@ def _text(data: Any, summary: dict[str, Any]) -> str:
             lines.append(f"  {name:18} not determined by any curve")
             continue
         spread = 0.5 * (found["upper_quartile"] - found["lower_quartile"])
-        text = with_sigma(found["median"], spread, found["unit"])
+        text = with_sigma(found["median"], spread, "" if found["unit"] == "1" else found["unit"])
         many = "1 curve" if found["curves"] == 1 else f"{found['curves']} curves"
         lines.append(f"  {name:18} {text} (median +- half the distance of the quartiles, {many})")
     lines += [f"  {number} x no result: {reason}" for reason, number in summary["reasons"].items()]

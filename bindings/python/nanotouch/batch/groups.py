@@ -151,7 +151,7 @@ def _spread(group: str, quantity: str, rows: Sequence[Mapping[str, Any]]) -> Spr
         percentiles=tuple(float(v) for v in np.percentile(good, PERCENTILES)) if good.size else nothing,
         geometric_mean=float(np.exp(logs.mean())) if logs.size else np.nan,
         geometric_deviation=float(np.exp(logs.std(ddof=1))) if logs.size > 1 else np.nan,
-        log_normal=bool(anderson_darling(logs) < _CRITICAL) if logs.size >= _FEWEST else None,
+        log_normal=bool(anderson_darling(logs) < _CRITICAL) if logs.size >= max(_FEWEST, good.size) else None,
     )
 
 

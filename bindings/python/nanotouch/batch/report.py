@@ -109,9 +109,9 @@ def _histogram(quantity: str, spreads: Sequence[Spread]) -> Any:
     every = np.concatenate([found.values for found in spreads])
     shown, scale = engineering(unit, np.array([np.median(every)])) if unit else ("", 1.0)
     low, high = float(every.min()), float(every.max())
-    wide = high > _DECADE * low
+    wide = high > _DECADE * low > 0.0  # an exponent may be 0
     if low == high:
-        low, high = 0.9 * low, 1.1 * high
+        low, high = (0.9 * low, 1.1 * high) if low else (0.0, 1.0)
     edges = np.geomspace(low, high, _BINS + 1) if wide else np.linspace(low, high, _BINS + 1)
     figure = new_figure(7.0, 3.2)
     panel = figure.add_subplot()
@@ -119,7 +119,7 @@ def _histogram(quantity: str, spreads: Sequence[Spread]) -> Any:
         panel.hist(found.values * scale, edges * scale, histtype="stepfilled", alpha=0.45, color=colour,
                    label=f"{plain(found.group or 'all')} ({found.values.size})")  # fmt: skip
         panel.axvline(found.percentiles[2] * scale, color=colour, lw=1.5)
-        if found.log_normal:
+        if found.log_normal and low > 0.0:
             _draw_log_normal(panel, found, edges, scale, colour)
     if wide:
         panel.set_xscale("log")

@@ -185,14 +185,16 @@ def _relaxation(result: FitResult) -> list[tuple[str, str]]:
         return []
     if "exponent" in result.values:
         low, high = result.interval["exponent"]
-        text = f"E goes as t^-beta, at 1 s as above; beta {result.show('exponent')}, 95 % from {low:.4f} to {high:.4f}"
+        text = f"E goes as t^-beta, at 1 s as above; beta {result.show('exponent')}"
+        if result.determined("exponent"):
+            text += f", 95 % from {low:.4f} to {high:.4f}"
         return [("relaxation", text)]
     names = [name for name in result.values if name.startswith("relaxation_time")]
     arms = [
         f"{result.show(name.replace('relaxation_time', 'arm_modulus'))} more within {result.show(name)}"
         for name in names
     ]
-    return [("relaxation", f"E at rest as above; {', '.join(arms)}")]
+    return [("relaxation", f"E* at rest {result.show('effective_modulus')}; of E* {', '.join(arms)}")]
 
 
 def _modulus(result: FitResult) -> tuple[tuple[float, float, float], list[tuple[str, str]]]:

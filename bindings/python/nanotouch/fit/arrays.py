@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch._arrays import Floats, as_floats
+from nanotouch.errors import InvalidValue
 
 from .contact_part import Contact, contact_of
 from .fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
@@ -101,6 +102,8 @@ def fit_points(
         Parameters to hold, by name, at a value [SI].
     """
     compiled, chosen = extension(), find(model)
+    if chosen.kernel:
+        raise InvalidValue(f"model {chosen.name!r} is fitted to a whole curve over time: fit_curve")
     X, F = as_floats(position, "position"), as_floats(force, "force")
     held = dict(fixed or {})
     layer_of(chosen, None, None, held)

@@ -83,6 +83,8 @@ def stability(curve: ForceCurve, model: str | Model = "hertz", *, windows: int =
     whole = fit_curve(curve, model, report=report, **options)
     if "effective_modulus" not in whole.values:
         raise InvalidValue(f"model {whole.model!r} has no effective_modulus")
+    if whole.time is not None:
+        raise InvalidValue(f"model {whole.model!r} is fitted to a whole curve over time, not to windows of it")
     options["contact_point"] = whole.values["contact_point"]
     ends = float(whole.indentation.max()) * np.linspace(_FIRST, 1.0, windows)
     found = np.full((2, windows), np.nan)

@@ -31,6 +31,7 @@ from .uncertainties import Uncertainties
 
 _WIDE = 0.5  # contact radius over that of a paraboloid
 _THICK = 2.0  # contact radius over a layer's thickness
+_WRONG = 0.05  # residual over the load from where a model is wrong
 _SLOW = 3.0  # a relaxation time beyond the record's length times this is none that it shows
 
 
@@ -66,7 +67,7 @@ def fit_whole(
     _turn(spread.values, spread.interval)
     if sample.poisson_ratio is not None:
         _add_youngs_modulus(sample, spread, uncertainties, notes, assumptions)
-    reason, rms = "" if found.raw["converged"] else "the fit stopped before it converged", found.rms(track)
+    reason, rms = _wrong(law, found, track), found.rms(track)
     return FitResult(
         model=law.model.name,
         title=law.model.title,
@@ -108,6 +109,14 @@ def fit_whole(
         units={name: _unit(law, name) for name in spread.values},
         time=track.time[track.fitted],
     )
+
+
+def _wrong(law: Law, found: Found, track: Track) -> str:
+    """Why none of the values is a property of the sample, as of all fits; else empty."""
+    if not found.raw["converged"]:
+        return "the fit stopped before it converged"
+    wrong = found.rms(track) > max(MISFIT * law.noise, _WRONG * float(found.raw["peak"]))
+    return "the model does not describe the curve" if wrong else ""
 
 
 def _not_of_this_law() -> Any:
