@@ -35,7 +35,7 @@ exclude_patterns = [
     "build",
     "gallery/*.md5",
     "notebooks/*.md5",
-    "evidence/decisions/README.md",
+    "decisions/README.md",
 ]
 myst_enable_extensions = ["deflist", "colon_fence"]
 myst_heading_anchors = 4

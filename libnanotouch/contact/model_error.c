@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What Maugis-Dugdale itself is worth: its distance to a sphere under the Lennard-Jones law on the same half-space,
  * both with indentation counted from where the load is 0, as measured curves are; loads from -0.9 to 10 pull-off
- * forces. Made with the tables of tools/lennard_jones (nanotouch.reference.model_error); docs/evidence/lennard_jones.md. */
+ * forces. Made with the tables of tools/lennard_jones (nanotouch.reference.model_error);
+ * docs/evidence/lennard_jones.md. */
 #include <math.h>
 
 #include "contact/geometry.h"

@@ -81,7 +81,8 @@ double nt_sampled_master_hold(const nt_rig *rig, const nt_gains *gains)
 static nt_sampled_tool tool_of(const nt_gains *gains)
 {
     const double K = gains->coupling_stiffness, drag = gains->coupling_damping * gains->rate;
-    return K > 0.0 ? (nt_sampled_tool){1.0 / K, drag / (K + drag), K * drag / (K + drag)} : (nt_sampled_tool){.give = 0.0};
+    return K > 0.0 ? (nt_sampled_tool){1.0 / K, drag / (K + drag), K * drag / (K + drag)}
+                   : (nt_sampled_tool){.give = 0.0};
 }
 
 nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains)

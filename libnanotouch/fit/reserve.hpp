@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Memory put by for Ceres; private to fit/. Why, and what it asks of a program:
-// docs/evidence/decisions/0009-memory-for-ceres.md.
+// docs/decisions/0009-memory-for-ceres.md.
 #pragma once
 
 namespace nanotouch

@@ -5,8 +5,8 @@
 #define NANOTOUCH_HOST_TASK_H
 
 #include "host/text.h"
-#include "nanotouch/host.h"
 #include "nanotouch/advanced/random.h"
+#include "nanotouch/host.h"
 
 typedef struct nt_operator nt_operator;
 

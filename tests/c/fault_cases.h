@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The faults of the table in docs/evidence/safety.md and what has to happen: to be injected while the operator presses with 3 N,
- * draws back to 1 N and presses again with 3.5 N. */
+ * The faults of the table in docs/evidence/safety.md and what has to happen: to be injected while the operator presses
+ * with 3 N, draws back to 1 N and presses again with 3.5 N. */
 #ifndef TESTS_FAULT_CASES_H
 #define TESTS_FAULT_CASES_H
 

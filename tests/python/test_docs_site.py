@@ -18,7 +18,7 @@ MADE = {
     "gallery/index.rst",
     "notebooks/index.rst",
 }  # when the site is built
-OWN = {"README.md", "index.md", "evidence/decisions/README.md"}
+OWN = {"README.md", "index.md", "decisions/README.md"}
 
 
 def pages() -> list[Path]:

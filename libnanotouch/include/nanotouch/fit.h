@@ -18,7 +18,7 @@
  *
  * All functions: thread-safe, no state between calls, nothing printed, no exception escapes. Not real-time (heap).
  * While nt_fit_run or nt_fit_batch runs, the new handler of C++ (std::set_new_handler) is the library's: Ceres survives
- * a full heap by it (docs/evidence/decisions/0010-memory-for-ceres.md). It hands on to the one that was set before, which is set
+ * a full heap by it (docs/decisions/0010-memory-for-ceres.md). It hands on to the one that was set before, which is set
  * again at the end. Set none meanwhile. */
 #ifndef NANOTOUCH_FIT_H
 #define NANOTOUCH_FIT_H

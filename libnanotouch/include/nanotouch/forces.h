@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Non-contact forces between a tip and a flat, at gap h of the undeformed bodies (paper, Eq. 1, corrected:
- * docs/evidence/errata.md; in liquid: docs/forces.md). Each law returns {U, F, k, a = 0}: U is 0 at infinite gap, F = -dU/dh,
- * k = -dF/dh. Below minimum_gap F stays at its value there and U goes on linearly. nt_x_eval_n is nt_x_eval over
- * arrays. All functions: thread-safe, real-time safe; NaN in, NaN out; an infinite gap gives 0. Parameters are checked
- * once by nt_x_check(). What adds, is added by the caller; erratum E5b says what may be added to a contact law. */
+ * docs/evidence/errata.md; in liquid: docs/forces.md). Each law returns {U, F, k, a = 0}: U is 0 at infinite gap, F =
+ * -dU/dh, k = -dF/dh. Below minimum_gap F stays at its value there and U goes on linearly. nt_x_eval_n is nt_x_eval
+ * over arrays. All functions: thread-safe, real-time safe; NaN in, NaN out; an infinite gap gives 0. Parameters are
+ * checked once by nt_x_check(). What adds, is added by the caller; erratum E5b says what may be added to a contact law.
+ */
 #ifndef NANOTOUCH_FORCES_H
 #define NANOTOUCH_FORCES_H
 
