@@ -302,6 +302,18 @@ def test_a_curve_that_the_model_does_not_describe_determines_nothing() -> None:
     assert "not determined: the model does not describe the curve" in str(found)
 
 
+@pytest.mark.parametrize("first", [400, 375])
+def test_an_approach_that_begins_in_contact_determines_nothing(first: int) -> None:
+    """Level and tilt took the place of what lay before: E was half of what is true, and `ok`."""
+    whole = curve_of(Sample(1200.0, 0.3, depth=1.5e-6), 800, noise=10e-12)
+    approach, back = whole.segments
+    columns = ("time", "z", "force", "deflection")
+    inside = replace(approach, **{name: getattr(approach, name)[first:] for name in columns})
+    found = fit.fit_curve(replace(whole, segments=(inside, back)), "ting_power", **HERE)
+    assert found.status in ("undetermined", "not converged")
+    assert not any(found.identifiable.values())
+
+
 @pytest.mark.parametrize("values", [[0.0, 0.1, 0.2], [0.0, 0.0, 0.0]])
 def test_a_histogram_of_curves_that_do_not_relax(values: list[float]) -> None:
     pytest.importorskip("matplotlib")

@@ -32,6 +32,9 @@ from .uncertainties import Uncertainties
 _WIDE = 0.5  # contact radius over that of a paraboloid
 _THICK = 2.0  # contact radius over a layer's thickness
 _WRONG = 0.05  # residual over the load from where a model is wrong
+_FREE = (
+    0.1  # of the approach: with less out of contact its level and tilt take the place of a contact that began before
+)
 _SLOW = 3.0  # a relaxation time beyond the record's length times this is none that it shows
 
 
@@ -115,8 +118,11 @@ def _wrong(law: Law, found: Found, track: Track) -> str:
     """Why none of the values is a property of the sample, as of all fits; else empty."""
     if not found.raw["converged"]:
         return "the fit stopped before it converged"
-    wrong = found.rms(track) > max(MISFIT * law.noise, _WRONG * float(found.raw["peak"]))
-    return "the model does not describe the curve" if wrong else ""
+    if found.rms(track) > max(MISFIT * law.noise, _WRONG * float(found.raw["peak"])):
+        return "the model does not describe the curve"
+    last = track.starts[1] if len(track.starts) > 1 else track.time.size
+    free = float(np.mean(found.indentation[:last] <= 0.0))
+    return f"only {100.0 * free:.2g} % of the approach is out of contact" if free < _FREE else ""
 
 
 def _not_of_this_law() -> Any:
