@@ -81,9 +81,16 @@ def test_the_judge_finds_what_the_motor_does_after_a_stop() -> None:
 
 
 def test_the_judge_finds_a_ripple_that_grows() -> None:
-    session, ticks = nt.Session(), np.arange(3000)
-    for growth, breaks in ((0.0, False), (1e-3, True)):
+    """Over the windows and the two seconds after them; noise whose windows differ does not grow."""
+    session = nt.Session()
+    rate, windows = 10_000, 3000
+    ticks = np.arange(windows + 2 * rate)
+    noise = 20e-9 * np.random.default_rng(2).standard_normal(ticks.size)
+    noise[2500] *= 3.0
+    for growth, force, breaks in ((0.0, 0.0, False), (1e-3, 0.0, True), (0.0, noise, False)):
+        swing = force + 50e-9 * np.exp(growth * np.minimum(ticks, 20 / 1e-3)) * np.sin(0.3 * ticks)
+        parts = iter(np.split(swing, [windows, windows + rate]))
         judge = Judge()
         judge.promise(session)
-        judge.calm(session, 50e-9 * np.exp(growth * ticks) * np.sin(0.3 * ticks))
+        judge.calm(session, lambda _, parts=parts: next(parts), next(parts))
         assert bool(judge.broken) == breaks
