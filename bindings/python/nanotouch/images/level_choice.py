@@ -32,7 +32,8 @@ def choose(topography: Topography, used: NDArray[np.bool_] | None) -> tuple[Job,
     plane = Job(topography, used)
     plane.take_out("plane")
     along = plane.look()
-    bent = Job(topography, used, rows_stray=along.structure)
+    strays = bool(np.median(np.abs(np.diff(along.rows.offsets))) > 0.0)  # rows differ by more than their noise
+    bent = Job(topography, used, rows_stray=along.structure and strays)
     bows = drift.bends(plane.strips) and not along.fine
     if bows:
         bent.take_out("poly2")
