@@ -15,7 +15,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.touch.faults import CHANNELS, KINDS
 
 RUN, HOLD, RETRACT, LATCHED = (record.STATES.index(name) for name in ("RUN", "HOLD", "RETRACT", "LATCHED"))
-SAFETY = Path(__file__).parents[2] / "docs" / "safety.md"
+SAFETY = Path(__file__).parents[2] / "docs" / "evidence" / "safety.md"
 CASES = Path(__file__).parents[1] / "c" / "fault_cases.h"
 
 

@@ -70,4 +70,4 @@ def test_only_public_names(file: Path) -> None:
 
 def test_same_numbers_as_in_c() -> None:
     c = {file.stem for file in (PROGRAMS.parent / "c").glob("*.c")}
-    assert {file.stem for file in PROGRAMS.glob("*.py")} == c
+    assert {file.stem for file in PROGRAMS.glob("*.py")} <= c  # C has more, one for each way of use

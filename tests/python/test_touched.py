@@ -134,15 +134,13 @@ def test_a_map_without_places_asks_for_its_pixels() -> None:
     assert maps.to_surface(data, scene, pixel_size=50e-9, dilate=True).tip_radius == 20e-9
 
 
-def test_a_measured_map_is_touched() -> None:
+def test_a_measured_map_of_what_relaxes_is_refused_in_words() -> None:
+    """Cells: no elastic law describes them, and a scene has no time."""
     file = DATA / "curves" / "map-data-2022.10.29-12.27.34.564.jpk-force-map"
     if not file.exists():
         pytest.skip("no real data here")
     pytest.importorskip("xarray")
-    data = maps.fit(file, model="cone", half_angle=0.35)
-    scene = maps.to_scene(data)
-    surface = maps.to_surface(data, scene, fill_by="median", pixel_size=None if data.x.attrs.get("units") else 1e-6)
-    plan = scene.plan(surface=surface)
-    assert plan.explain()["terms"][0]["form"] == "local"
-    low, high = plan.explain()["properties"]["youngs_modulus"]
-    assert 1e2 < low < high < 1e7  # soft
+    with pytest.raises(InvalidValue, match="no curve of this map determines it"):
+        maps.to_scene(maps.fit(file, model="cone", half_angle=0.35))
+    with pytest.raises(InvalidValue, match="a scene is elastic"):
+        maps.to_scene(maps.fit(file, model="ting_power_cone", half_angle=0.35))

@@ -13,6 +13,7 @@ from .._arrays import Floats, as_floats
 from ..errors import InvalidValue
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
 from ..fit.models import is_sharp
+from ..fit.over_time import OVER_TIME
 from ..fit.touched import FittedLaw, scene_of, youngs_modulus
 from ..images import Topography, fill
 from ..images.values import LEAST_SHARE, Fill
@@ -33,6 +34,8 @@ def to_scene(data: Any, *, poisson_ratio: float = 0.3) -> Scene:
         Of the sample; it says which E an E* is, and changes no force.
     """
     settings = _settings(data)
+    if settings.model in OVER_TIME:
+        raise InvalidValue(f"model {settings.model!r}: a scene is elastic; fit the map with an elastic law")
     if settings.thickness is not None:
         raise InvalidValue(f"model {settings.model!r}: the contact of a scene is on a half-space, not on a layer")
     known = {name: _known(data, name) for name in ("effective_modulus", "work_of_adhesion") if name in data}
