@@ -126,6 +126,24 @@ def test_a_spike_among_disturbed_pixels_goes() -> None:
     assert clean.height_range < 60 * NM
 
 
+@pytest.mark.parametrize("seed", [6, 10])
+def test_rows_that_stray_make_no_bow_of_a_grating_along_them(seed: int) -> None:
+    """Offsets and a random walk over lines of 10 nm were read as a bow of 7 to 34 nm: worse than a plane alone."""
+    rng = np.random.default_rng(seed)
+    y, x = np.mgrid[:256, :256] / 256.0
+    truth = 10.0 * NM * ((y * 256 // 24) % 2 == 0)
+    strays = 0.5 * rng.standard_normal(256) + 0.25 * np.cumsum(rng.standard_normal(256))
+    bow = 12.0 * (x - 0.5) ** 2 + 6.0 * (y - 0.5) ** 2
+    scan = truth + NM * (strays[:, None] + 30.0 * x + 10.0 * y + bow + 0.15 * rng.standard_normal(y.shape))
+    flat = np.column_stack([np.ones(y.size), x.ravel(), y.ravel()])
+
+    def beside_a_plane(result: synthetic.Array) -> float:
+        off = (result - truth).ravel()
+        return float(np.std(off - flat @ np.linalg.lstsq(flat, off, rcond=None)[0]))
+
+    assert beside_a_plane(levelled(scan)[0]) < beside_a_plane(scan)
+
+
 @pytest.mark.parametrize(("name", "most"), [("sample_0.stp", 0.15), ("sample_0.jpk-qi-image", 9.0), ("nid-1.nid", 4.4)])
 def test_real_images(name: str, most: float) -> None:
     """Banded by 5.4, 17 and 7.3 nm by plane and rows alone; the third is of its height sensor, which is noisier."""

@@ -196,4 +196,6 @@ def event(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
     if not words or age > SHOWN:
         return
     x, y, width, height = frame
-    painter.text(x + 0.5 * width, y + 0.78 * height, words, palette.accent, LARGE, "centre", bold=True)
+    room, middle, level = painter.width_of(words, LARGE, bold=True) + 32, x + 0.5 * width, y + 0.9 * height
+    painter.box((middle - 0.5 * room, level - 0.75 * LARGE, room, 1.5 * LARGE), palette.panel, palette.line)
+    painter.text(middle, level, words, palette.accent, LARGE, "centre", bold=True)
