@@ -126,15 +126,17 @@ def test_a_spike_among_disturbed_pixels_goes() -> None:
     assert clean.height_range < 60 * NM
 
 
-@pytest.mark.parametrize("seed", [6, 10])
+@pytest.mark.parametrize("seed", [0, 3])
 def test_rows_that_stray_make_no_bow_of_a_grating_along_them(seed: int) -> None:
-    """Offsets and a random walk over lines of 10 nm were read as a bow of 7 to 34 nm: worse than a plane alone."""
+    """Offsets and a random walk over round lines of 10 nm were read as a bow: 2.6 and 8.3 nm off, a plane 1.7."""
     rng = np.random.default_rng(seed)
     y, x = np.mgrid[:256, :256] / 256.0
-    truth = 10.0 * NM * ((y * 256 // 24) % 2 == 0)
+    round_edge = np.exp(-0.5 * (np.arange(-3, 4) / 0.8) ** 2)
+    profile = np.pad(10.0 * NM * ((np.arange(256) // 24) % 2 == 0), 3, mode="edge")
+    truth = np.convolve(profile, round_edge / round_edge.sum(), "valid")[:, None] + 0.0 * x
     strays = 0.5 * rng.standard_normal(256) + 0.25 * np.cumsum(rng.standard_normal(256))
-    bow = 12.0 * (x - 0.5) ** 2 + 6.0 * (y - 0.5) ** 2
-    scan = truth + NM * (strays[:, None] + 30.0 * x + 10.0 * y + bow + 0.15 * rng.standard_normal(y.shape))
+    bow = 15.0 * rng.standard_normal() * y + 12.0 * (x - 0.5) ** 2 + 6.0 * (y - 0.5) ** 2
+    scan = truth + NM * (strays[:, None] + 30.0 * x + bow + 0.15 * rng.standard_normal(y.shape))
     flat = np.column_stack([np.ones(y.size), x.ravel(), y.ravel()])
 
     def beside_a_plane(result: synthetic.Array) -> float:
