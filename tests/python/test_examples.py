@@ -118,7 +118,9 @@ def test_the_help_loads_no_command() -> None:
         heavy = ("nanotouch.images", "nanotouch.curves", "nanotouch.touch", "nanotouch.scene", "nanotouch_app.data")
         sys.exit([name for name in sys.modules if name.startswith(heavy)])
     """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    line = [sys.executable, "-c", program]
+    done = subprocess.run(line, env=environment, capture_output=True, text=True, check=False)
     assert done.stderr.splitlines()[-1] == "[]", done  # sys.exit of a list prints it
 
 
