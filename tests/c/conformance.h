@@ -67,6 +67,13 @@ static inline const char *conform_start(const conformance *c, nt_hal *hal, nt_re
     return NULL;
 }
 
+/* One period in which all is well. */
+static inline const char *conform_period(const conformance *c, const nt_hal *hal, nt_reading *reading)
+{
+    c->pass(c->host, c->configuration.period);
+    return hal->backend->read(hal->context, reading) == NT_OK ? NULL : broken_rule("a read succeeds");
+}
+
 static inline nt_status conform_stay(const conformance *c, const nt_hal *hal, const nt_reading *reading, double z)
 {
     nt_action action = {.size = sizeof action, .time = c->host->now(c->host)};
@@ -183,8 +190,10 @@ static inline const char *conform_silence(const conformance *c)
     const char *rule = conform_start(c, &hal, &reading);
     if (rule)
         return rule;
+    rule = conform_period(c, &hal, &reading);
     c->silence(c->device, 1);
-    rule = conform_silent_periods(c, &hal, &reading);
+    if (!rule)
+        rule = conform_silent_periods(c, &hal, &reading);
     c->silence(c->device, 0);
     const double stood = c->left_at ? c->left_at(c->device) : 0.0;
     nt_hal_close(&hal);
@@ -203,6 +212,7 @@ static inline const char *conform_loss(const conformance *c)
     const char *rule = conform_start(c, &hal, &reading);
     if (rule)
         return rule;
+    rule = conform_period(c, &hal, &reading);
     c->lose(c->device);
     int is_said = 0;
     for (int i = 0; i < SILENT_PERIODS && !rule; ++i) {

@@ -53,17 +53,20 @@ typedef struct mailbox_program {
     double lift;     /* that a slave owes [m] */
     int is_armed;
     int is_silent, is_dead, ends; /* its device says nothing; it does nothing at all; its thread ends */
+    int is_led;                   /* while it is armed its thread measures nothing: the test's periods do */
     pthread_mutex_t lock;
     pthread_t thread;
 } mailbox_program;
 
 /* One turn of the loop of every such program; with the lock held. */
-static inline void mailbox_turn(mailbox_program *p)
+static inline void mailbox_turn(mailbox_program *p, int is_thread)
 {
     nt_mailbox_request request;
     if (p->is_dead)
         return;
     nt_mailbox_ask(p->mailbox, &request);
+    if (is_thread && p->is_led && p->is_armed && request.is_armed)
+        return;
     if (p->half == NT_HALF_MASTER)
         p->force = request.target[NT_Z];
     else if (request.is_armed && !isnan(request.target[NT_Z]))
@@ -89,7 +92,7 @@ static inline void *mailbox_run(void *context)
     const struct timespec nap = {.tv_nsec = 200000};
     for (int ends = 0; !ends; (void)nanosleep(&nap, NULL)) {
         (void)pthread_mutex_lock(&p->lock);
-        mailbox_turn(p);
+        mailbox_turn(p, 1);
         ends = p->ends;
         (void)pthread_mutex_unlock(&p->lock);
     }
