@@ -92,8 +92,6 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@$(VENV)/python tests/heavy/push.py
 	@$(VENV)/python tests/heavy/rods.py
 	@$(VENV)/python tests/heavy/fit_ting.py
-	@$(VENV)/python tests/heavy/verdicts.py 300
-	@$(VENV)/python tests/heavy/verdicts.py 300 --held-out
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev --target test_fit_memory
 	@build/dev/tests/c/test_fit_memory every
@@ -101,6 +99,8 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@$(VENV)/python tests/heavy/limits.py
 	@build/dev/tests/c/test_session_mailbox 1000
 	@$(VENV)/python tests/heavy/guarantee.py
+	@$(VENV)/python tests/heavy/verdicts.py 300
+	@$(VENV)/python tests/heavy/verdicts.py 300 --held-out
 
 adversary:  ## 20 000 runs by all doors of a person (session, live, devices, mailbox) against every printed number; FIRST=seed COUNT=n ROWS=file
 	@tools/setup.sh test

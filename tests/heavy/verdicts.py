@@ -83,7 +83,7 @@ def main() -> None:
     share = counts["wrong"] / max(counts["ok"], 1)
     print(f"of {counts['ok']} ok: {counts['wrong']} wrong ({100 * share:.2f} %), {counts['wide']} wide; "
           f"{100 * lost:.1f} % of the clean ones are not ok")  # fmt: skip
-    sys.exit(share > MOST_WRONG or counts["wide"] > 0)
+    sys.exit(share > MOST_WRONG or counts["wide"] > 0 or lost > MOST_LOST)
 
 
 if __name__ == "__main__":

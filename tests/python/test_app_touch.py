@@ -169,9 +169,13 @@ def test_touches_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str], no
     tilt = 0.035 * 6e-6 / 64 * np.arange(64)
     file = write_ibw_image(tmp_path / "grating.ibw", {"HeightRetrace": heights + tilt}, 6e-6 / 64)
     out = tmp_path / "out"
-    assert main(["touch", str(file), "--at", "1.5um,3um", "--duration", "4s", "--out", str(out)]) == 0
+    line = ["touch", str(file), "--at", "1.5um,3um", "--duration", "4s", "--out", str(out)]
+    assert main(line) == 0
     said = capsys.readouterr().out
-    assert "a tilt of 2 degrees" in said
+    assert "levelling: height range" in said
+    assert "removed" not in said  # the steps are for --verbose
+    assert main([*line, "--verbose", "--overwrite"]) == 0
+    assert "a tilt of 2 degrees" in capsys.readouterr().out
     assert "touched  grating.ibw, 6 x 6 um, 64 x 64 pixels" in said
     assert "LevelReport(" not in said
     recording = record.read(out / "recording.mcap")

@@ -139,6 +139,12 @@ def write_json(path: Path, data: Mapping[str, Any]) -> None:
         raise Error(f"cannot write {path}: {error.strerror}") from error
 
 
+def in_short(report: object) -> str:
+    """What was done to an image and what speaks against it, without each step and its rivals."""
+    first, *rest = str(report).splitlines()
+    return "\n".join((first, *(line for line in rest if line.strip().startswith("warning:"))))
+
+
 def as_json(value: Any) -> Any:
     """What JSON has a spelling for: NaN (not known) is null, infinities are the strings ``"inf"`` and ``"-inf"``."""
     if isinstance(value, Mapping):

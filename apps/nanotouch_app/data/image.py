@@ -222,7 +222,7 @@ def _repaired(
         warnings.simplefilter("ignore", UserWarning)
         if args.level != "none":
             image, levelled = images.level(image, args.level, mask)
-            print(levelled if args.verbose else _in_short(levelled))
+            print(levelled if args.verbose else output.in_short(levelled))
             facts["removed"] = {f"{n}_{step.method}_m": step.removed_range for n, step in enumerate(levelled.steps, 1)}
             facts["tilt"] = {"dz_dy": levelled.tilt[0], "dz_dx": levelled.tilt[1]}
             facts["terraces"] = [{"height_m": t.height, "share": t.share} for t in levelled.terraces]
@@ -237,12 +237,6 @@ def _repaired(
             print(speckles)
             facts["speckles"] = {"pixels": speckles.pixels, "largest_m": speckles.largest}
     return image
-
-
-def _in_short(levelled: images.LevelReport) -> str:
-    """What was done and what speaks against it, without each step and its rivals."""
-    first, *rest = str(levelled).splitlines()
-    return "\n".join((first, *(line for line in rest if line.strip().startswith("warning:"))))
 
 
 def _tip(text: str | None) -> images.Paraboloid | images.RoundedCone | None:

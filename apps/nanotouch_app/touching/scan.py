@@ -165,7 +165,7 @@ def _write(
         surface, reports = image.without_tip(tip), []
         if scan_rig.is_named(args) or any(settings[f"raster.{name}"] for name in ("tilt_x", "tilt_y", "drift")):
             surface, told = images.prepare(surface)
-            reports = [f"surface.gwy: {report}\n" for report in told]
+            reports = [f"surface.gwy: {report if args.verbose else output.in_short(report)}\n" for report in told]
         images.write(out / "surface.gwy", replace(surface, channel=images.READY))
         output.write_json(out / "scan.json", facts)
     print("".join(reports), end="")

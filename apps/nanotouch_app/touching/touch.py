@@ -127,7 +127,7 @@ def _say_before(session: nt.Session, args: argparse.Namespace) -> None:
     """What is known before anything moves: notes of the image, and with ``--verbose`` margins and limits."""
     surface = session.surface
     assert surface is not None
-    print("".join(f"{note}\n" for note in surface.notes), end="")
+    print("".join(f"{note if args.verbose else output.in_short(note)}\n" for note in surface.notes), end="")
     if args.verbose:
         output.say(f"surface: {describe(surface.topography)}\n{summary.before(session)}")
 

@@ -181,8 +181,8 @@ def _interval_notes(read: Mapping[str, Any], depth: float) -> list[str]:
         )
     elif most - depth > 5.0 * sigma and most > 1.2 * depth:
         notes.append(
-            f"the retraction ends {offset * 1e9:.3g} nN below the approach: a tether that holds to the end and drag or "
-            f"an offset look the same, so {between}"
+            f"the retraction ends {abs(offset) * 1e9:.3g} nN {'below' if offset > 0.0 else 'above'} the approach: a "
+            f"tether that holds to the end and drag or an offset look the same, so {between}"
         )
     elif depth - least > max(5.0 * sigma, _DOUBTFUL * depth):
         notes.append(
