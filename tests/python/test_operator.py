@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from nanotouch import Session, Surface, presets, surface
+from nanotouch import Session, Settings, Surface, presets, surface
 from nanotouch.touch.operator import script_for
 
 GRATING = Surface(surface.grating(pixels=128), 20e-9)
@@ -64,3 +64,17 @@ def test_a_steeper_path_takes_longer() -> None:
     along_the_lines = [(1.5e-6, 0.0), (1.5e-6, 6e-6)]
     across = [(0.0, 3e-6), (6e-6, 3e-6)]
     assert time(across) > time(along_the_lines)
+
+
+def test_the_default_hand_comes_down_below_a_small_force_limit() -> None:
+    """It approached with 0.2 N at the hand, whatever that is at the tip: 54 nN were the limit, and it was stopped."""
+    scene, rig = presets.silicon_in_air()
+    scene.range.maximum_load = 54e-9
+    settings = Settings.for_rig(rig)
+    settings.limits.force, settings.gains.alpha_f, settings.gains.set_point = 54e-9, 3e6, 20e-9
+    session = Session(scene, rig, settings=settings, minimum_margin=0.0)
+    limits, gains = session.settings.limits, session.settings.gains
+    assert gains.alpha_f * limits.force < 0.2
+    touch = session.run()
+    assert not touch.state.any()
+    assert touch.tip_force.max() > 0.3 * limits.force  # it presses all the same

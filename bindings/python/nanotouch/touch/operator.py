@@ -151,8 +151,9 @@ def _contact_force(session: Touch, wanted: float) -> float:
 
 def _approach(session: Touch) -> list[Input]:
     x, y = session.path[0]
-    travel_time = 1.3 * session.clearance / _slave_speed(session, APPROACH_FORCE)
-    return [Input(APPROACH_FORCE, x, y, 0.5), Input(APPROACH_FORCE, x, y, travel_time + 0.5)]
+    force = _contact_force(session, APPROACH_FORCE)
+    travel_time = 1.3 * session.clearance / _slave_speed(session, force)
+    return [Input(force, x, y, 0.5), Input(force, x, y, travel_time + 0.5)]
 
 
 def _depth(session: Touch, force: float) -> float:
