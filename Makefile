@@ -7,7 +7,7 @@ VENV := .venv/bin
 # five times the processor time with two.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz sanitize sanitize-sample mutate damage corpus heavy adversary windows macos kernel conformance bench lint format lock sbom versions clean
+.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz sanitize sanitize-sample mutate damage corpus heavy adversary windows macos kernel conformance bench lint format lock sbom api deb release versions clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -161,6 +161,16 @@ lock:  ## the packages of demo and test by version and SHA-256, tools/lock; need
 sbom:  ## the list of parts, CycloneDX, build/sbom.json
 	@mkdir -p build
 	@python3 tools/sbom.py tools/lock/demo.txt >build/sbom.json
+
+api:  ## the public API of C and Python as two listings, docs/api; a test compares them with the sources
+	@tools/setup.sh test
+	@$(VENV)/python tools/api.py
+
+deb:  ## Debian packages of the C library, build/packages; needs debhelper
+	@tools/deb.sh build/packages
+
+release:  ## all files of a release in build/release-files, each tried where nothing of this checkout is; half an hour; PYTHONS=3.11 limits the wheels
+	@tools/release.sh build/release-files $(or $(PYTHONS),3.11 3.12 3.13 3.14)
 
 versions:  ## the oldest and the newest packages that are allowed, tested; needs the net; some minutes
 	@tools/setup.sh test
