@@ -2,6 +2,8 @@
 """A mock of Haply's Inverse Service: it sends the first frame by itself, then one for each command, as the service
 does, and notes the forces. A test tells it what to send instead, or to be silent, or to close.
 
+With NANOTOUCH_DESK in the environment the device is that of mock_sdk/desk.py; else it stands still.
+
 Usage: mock_inverse3.py [PORT]    prints the port that it serves
 """
 
@@ -9,18 +11,23 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import sys
 from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
+
+sys.path.append(str(Path(__file__).with_name("mock_sdk")))
+from desk import Desk
 
 ID = "04BA"
 
 
-def frame(z: float = 0.2, device: str = ID, pressed: str = "") -> str:
+def frame(z: float = 0.2, device: str = ID, pressed: str = "", x: float = 0.01, y: float = -0.15) -> str:
     """As the service sends it, with one Inverse3 and a grip."""
-    state = {"cursor_position": {"x": 0.01, "y": -0.15, "z": z}, "cursor_velocity": {"x": 0.0, "y": 0.0, "z": 0.0}}
+    state = {"cursor_position": {"x": x, "y": y, "z": z}, "cursor_velocity": {"x": 0.0, "y": 0.0, "z": 0.0}}
     buttons = {name: name in pressed for name in "abc"}
     grip = {"device_id": "61548", "state": {"buttons": buttons, "orientation": {"w": 1.0, "x": 0, "y": 0, "z": 0}}}
     return json.dumps({"inverse3": [{"device_id": device, "state": state}], "wireless_verse_grip": [grip]})
@@ -41,6 +48,7 @@ class Service:
     open: int = 0
     """of them"""
     port: int = 0
+    desk: Desk | None = None
 
     async def start(self) -> None:
         """Listen on a free port of the loopback."""
@@ -83,13 +91,16 @@ class Service:
         except (ValueError, KeyError, TypeError):
             return False
         self.forces.append(values)
+        if self.desk is not None:
+            self.desk.force(*(values[axis] for axis in "xyz"))
+            self.forces.clear()
         return one["device_id"] == ID and sorted(values) == ["x", "y", "z"]
 
     async def _send(self, link: Any) -> bool:
         await asyncio.sleep(1e-3)
-        if self.silent:
+        if self.silent or (self.desk is not None and self.desk.stall == 1.0):
             return True
-        what = self.instead.popleft() if self.instead else frame(pressed=self.pressed)
+        what = self.instead.popleft() if self.instead else self._frame()
         if what is None:
             await link.close()
             return False
@@ -97,10 +108,20 @@ class Service:
             await (link.send_bytes(what) if isinstance(what, bytes) else link.send_str(what))
         return True
 
+    def _frame(self) -> str:
+        if self.desk is None:
+            return frame(pressed=self.pressed)
+        self.desk.move()
+        if self.desk.present != 1.0:
+            return json.dumps({"inverse3": []})
+        if self.desk.garbage == 1.0:
+            return frame(z=1e300)
+        return frame(self.desk.z, x=self.desk.x, y=self.desk.y, pressed="a" * int(self.desk.buttons))
+
 
 async def serve(port: int) -> None:
     """Serve until the process ends."""
-    service = Service(port=port)
+    service = Service(port=port, desk=Desk() if "NANOTOUCH_DESK" in os.environ else None)
     await service.start()
     print(service.port, flush=True)
     await asyncio.Event().wait()

@@ -17,13 +17,17 @@ import json
 import math
 import signal
 import sys
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from nanotouch.errors import Error, require
 from nanotouch.touch import mailbox
 from nanotouch.touch.hal import Capabilities, Channel, Reading
+
+if TYPE_CHECKING:
+    from nanotouch_app.devices.bridge import Box
 
 URL = "ws://localhost:10001"
 """of the Inverse Service"""
@@ -154,7 +158,7 @@ def command(device: str, force: Sequence[float]) -> str:
 class Bridge:
     """Between the service and a mailbox, until it is stopped."""
 
-    mailbox: mailbox.Device
+    mailbox: mailbox.Device | Box
     url: str = URL
     device: str = ""
     """id of the device; "": the first one that is there, and no other from then on"""
@@ -163,6 +167,15 @@ class Bridge:
     )
     is_turned: bool = False
     """the service reports in other axes than its own: up may be down"""
+
+    @property
+    def trouble(self) -> str:
+        """Why there is no reading, in words."""
+        if not self.counts["connections"]:
+            return f"nothing answers at {self.url}"
+        if self.counts["turned"]:
+            return "the service turns, moves or scales its axes: set basis, mount and transform back"
+        return f"the service at {self.url} reports no Inverse3 that is ready"
 
     async def run(self) -> None:
         """Connect, and again after each loss. Meanwhile the program lives, and its last reading grows old."""
@@ -233,6 +246,22 @@ class Bridge:
                   file=sys.stderr, flush=True)  # fmt: skip
         self.counts["turned"] += 1
         return None
+
+
+def serve(box: Box, option: str, stopped: threading.Event) -> None:
+    """For nanotouch_app.devices.bridge; the option is the address of the service."""
+
+    async def served() -> None:
+        bridge = Bridge(box, option or URL)
+        task = asyncio.create_task(bridge.run())
+        while not stopped.is_set() and not task.done():
+            box.trouble = bridge.trouble
+            await asyncio.sleep(0.02)
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
+
+    asyncio.run(served())
 
 
 def _losses() -> tuple[type[BaseException], ...]:

@@ -17,7 +17,8 @@ from nanotouch.images import Topography
 
 from nanotouch_app.common import output, scenes, stop
 from nanotouch_app.common.quantity import parse_quantity, whole_number
-from nanotouch_app.live import display, files, hands, real
+from nanotouch_app.devices.table import DEVICES
+from nanotouch_app.live import device, display, files, real
 from nanotouch_app.live.board import TASKS
 from nanotouch_app.live.desk import Desk
 from nanotouch_app.live.host import Host
@@ -35,6 +36,7 @@ EPILOG = """examples:
   nanotouch live curve.jpk-force --radius 30nm      what you have measured: its fit becomes the scene
   nanotouch live silicon_in_air --record touch.mcap; nanotouch live touch.mcap
   nanotouch live rig.toml                what lies under the stage of your own that a rig file names
+  nanotouch live --hand inverse3         a haptic device leads the hand: its bridge is started with it
   nanotouch live --browser               the same in a browser: here, or through ssh -L
   nanotouch live silicon_in_air --film touch.gif    a film of a touch; needs no display"""
 
@@ -61,8 +63,9 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--film", metavar="FILE", help="film a scripted touch instead: .gif, .mp4, or .png of its end")
     output.takes_overwrite(parser)
     parser.add_argument("--hand", default="auto", metavar="NAME",
-                        help="gamepad, spacemouse, auto (those that are connected) or none, beside mouse and keys "
-                             "(default: %(default)s)")  # fmt: skip
+                        help=f"a haptic device that leads the hand: {', '.join(DEVICES)}, with :OPTION where it needs "
+                             "one (docs/devices.md), or the mailbox of a program of your own; or gamepad, spacemouse, "
+                             "auto or none, beside mouse and keys (default: %(default)s)")  # fmt: skip
     parser.add_argument("--browser", action="store_true",
                         help="show it in browsers instead of a window: prints the links (docs/page.md)")  # fmt: skip
     parser.add_argument("--port", type=whole_number(0, 65535), metavar="N",
@@ -80,6 +83,8 @@ def run(args: argparse.Namespace) -> int:
     if real.is_named(args.what):
         return real.touch(args)
     is_recording = _checked(args)
+    if device.is_named(args.hand) and not is_recording:
+        return device.touch(args, partial(_subject, args))
     if args.film is not None:
         return _film(args)
     front = _browsers(args, is_recording) if args.browser else _window(args)
@@ -112,7 +117,6 @@ def _checked(args: argparse.Namespace) -> bool:
             if not Path(file).parent.is_dir():
                 raise InvalidValue(f"{option} {file}: {Path(file).parent} is not a folder")
             output.check_free(Path(file), args, option)
-    hands.check_named(args.hand)
     files.check_named(args.what)
     is_recording = Path(args.what).is_file() and record.is_recording(args.what)
     _check_together(args, is_recording)

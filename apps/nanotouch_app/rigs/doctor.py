@@ -62,7 +62,7 @@ def findings(found: dict[str, list[Row]] | None = None) -> list[str]:
     ]
     for title, rows in found.items():
         lines += ["", title]
-        lines += [f"  {mark:3}{name:11}{text}" for name, mark, text in rows]
+        lines += [f"  {mark:3}{f'{name} ':11}{text}" for name, mark, text in rows]
     return lines
 
 

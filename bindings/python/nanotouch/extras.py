@@ -31,6 +31,9 @@ EXTRAS = {
     },
     "notebook": {"pandas": "pandas", "xarray": "xarray", "matplotlib": "matplotlib", "anywidget": "anywidget"},
     "hands": {"pysdl2": "sdl2", "pysdl2-dll": "sdl2dll", "hidapi": "hid"},
+    "forcedimension": {"forcedimension-core": "forcedimension_core"},
+    "geomagic": {"pyopenhaptics": "pyOpenHaptics"},
+    "wheel": {"evdev": "evdev"},
 }
 ADDS = {
     "images": "AFM images",
@@ -42,6 +45,9 @@ ADDS = {
     "maps": "force maps, also on a cluster",
     "notebook": "tables and pictures in notebooks",
     "hands": "gamepad and SpaceMouse",
+    "forcedimension": "nanotouch live --hand forcedimension, with the maker's SDK",
+    "geomagic": "nanotouch live --hand geomagic, with the maker's OpenHaptics",
+    "wheel": "nanotouch live --hand wheel",
 }
 """what each extra adds"""
 

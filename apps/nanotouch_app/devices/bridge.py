@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The bridge of a haptic device as a program: its module (nanotouch_app.devices.table) behind a mailbox.
+
+It prints "ready" with the first reading. It ends at SIGTERM, with ``--child`` at the end of its input, too, and leaves
+0 N. Where the device is missing it ends with status 2 and one line that says what to do.
+
+Usage: python -m nanotouch_app.devices.bridge DEVICE NAME [--option TEXT] [--timeout S]
+then, elsewhere: nanotouch live --hand NAME, or nanotouch.Session(rig=..., master=nanotouch.hal.Mailbox(NAME))
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import importlib.util
+import math
+import os
+import signal
+import sys
+import threading
+from collections.abc import Sequence
+from typing import Any
+
+from nanotouch.errors import DeviceError, Error, missing
+from nanotouch.touch import mailbox
+from nanotouch.touch.hal import Capabilities, Reading
+
+from nanotouch_app.devices.table import DEVICES, Device, named
+
+PATIENCE = 6.0
+"""until the first reading [s]"""
+TIMEOUT = 0.1
+"""of the mailbox [s]"""
+NOTHING = (0.0, 0.0, 0.0)
+"""no force [N]"""
+
+
+def module_of(device: Device) -> Any:
+    """Its module, once the package that it needs is there."""
+    if (
+        importlib.util.find_spec(device.module) is None
+    ):  # imported it may fail for the maker's library, which is another matter
+        raise missing(device.module, device.extra)
+    return importlib.import_module(f"{__package__}.{device.name}")
+
+
+class Box:
+    """The mailbox as a device sees it. A force is finite and within the range of its channels, else there is none."""
+
+    def __init__(self, device: mailbox.Device, capabilities: Capabilities) -> None:
+        self._device = device
+        self._limits = {row.axis: row.maximum for row in capabilities.channels if row.driven}
+        self.trouble = ""
+        """why there is no reading, in words"""
+        self.first = threading.Event()
+        """a reading has come"""
+
+    def publish(self, reading: Reading) -> None:
+        """A new measurement."""
+        self._device.publish(reading)
+        self.first.set()
+
+    def beat(self) -> None:
+        """A sign of life."""
+        self._device.beat()
+
+    def ask(self) -> mailbox.Request:
+        """What the session wants."""
+        request = self._device.ask()
+        return request._replace(target=self._bounded(request.target))
+
+    def _bounded(self, force: Sequence[float]) -> tuple[float, float, float]:
+        if not all(map(math.isfinite, force)):
+            return NOTHING
+        x, y, z = (
+            max(-limit, min(limit, f)) for f, limit in ((f, self._limits.get(i, 0.0)) for i, f in enumerate(force))
+        )
+        return x, y, z
+
+
+def serve(device: Device, name: str, option: str, timeout: float, stopped: threading.Event) -> None:
+    """Until it is stopped; :class:`~nanotouch.errors.Error` in words where no reading comes."""
+    module = module_of(device)
+    capabilities = module.capabilities()
+    with mailbox.Device(name, capabilities, timeout=timeout) as opened:
+        box = Box(opened, capabilities)
+        late: list[str] = []
+
+        def announce() -> None:
+            if box.first.wait(PATIENCE):
+                print("ready", flush=True)
+            elif not stopped.is_set():
+                late.append(box.trouble or "no reading has come")
+                stopped.set()
+
+        threading.Thread(target=announce, daemon=True).start()
+        try:
+            module.serve(box, option, stopped)
+        except DeviceError as error:
+            late.append(str(error))
+        if late:
+            raise DeviceError(f"{device.title}: {late[0]}. {device.needs}")
+
+
+def release(device: Device, option: str) -> None:
+    """Open the device, let go of it, and close it: what a bridge that was killed has left is no force any more."""
+    done = threading.Event()
+
+    class Empty:
+        """A mailbox behind which nobody drives."""
+
+        trouble = ""
+
+        def publish(self, _: Reading) -> None:
+            self.beat()
+
+        def beat(self) -> None:
+            threading.Timer(0.05, done.set).start()
+
+        def ask(self) -> mailbox.Request:
+            return mailbox.Request(False, "HOLD", 0, 0, NOTHING, 0.0, 0.0, 0.0)
+
+    threading.Timer(2.0, done.set).start()
+    module_of(device).serve(Empty(), option, done)
+
+
+def _listen(stopped: threading.Event) -> None:
+    """Whoever has started it goes: so does it."""
+
+    def wait() -> None:
+        while os.read(0, 4096):  # a buffered reader would hold a lock while Python ends
+            pass
+        stopped.set()
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="bridge", description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("device", metavar="DEVICE", help=", ".join(DEVICES))
+    parser.add_argument("name", metavar="NAME", help="of the mailbox")
+    parser.add_argument("--option", default="", help="for the device: the address of its service, its number, ...")
+    parser.add_argument(
+        "--timeout", type=float, default=TIMEOUT, metavar="S", help="of the mailbox (default: %(default)g)"
+    )
+    parser.add_argument("--child", action="store_true", help="end with the input")
+    parser.add_argument("--release", action="store_true", help="let go of the device, and end")
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the program."""
+    args = _parser().parse_args(arguments)
+    stopped = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stopped.set())
+    if args.child:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the session, which ends first
+        _listen(stopped)
+    try:
+        device = named(args.device)
+        if args.release:
+            release(device, args.option)
+        else:
+            serve(device, args.name, args.option, args.timeout, stopped)
+    except Error as error:
+        print(error, file=sys.stderr, flush=True)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

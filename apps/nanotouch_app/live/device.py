@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch live --hand DEVICE``: a haptic device leads the hand over a simulated sample, at wall pace. Its bridge is
+started here and ended with the session; a window shows the touch where there is a display, else the terminal does."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from subprocess import Popen
+from typing import Any
+
+import nanotouch as nt
+from nanotouch import record
+from nanotouch.errors import DeviceError, Error, InvalidValue
+from nanotouch.units import in_words
+
+from nanotouch_app.common import output, stop
+from nanotouch_app.devices.launch import Launched
+from nanotouch_app.devices.table import DEVICES, Device
+from nanotouch_app.live import display
+from nanotouch_app.live.hands import KINDS
+from nanotouch_app.live.subject import Subject
+
+USELESS = ("task", "film", "browser", "port", "page", "dark")
+TURN, LINE = 0.02, 1.0  # of the loop; between two lines [s]
+FELT = 0.3  # a force that a hand feels [N]
+OWN = "a program of your own"
+LOST = "device lost"
+"""why a session is latched whose mailbox nobody serves any more"""
+
+
+def is_named(name: str) -> bool:
+    """Whether this hand is a haptic device: one of the table, or the mailbox of a program of one's own."""
+    return name not in ("auto", "none", *KINDS)
+
+
+def touch(args: argparse.Namespace, subject: Callable[[], Subject]) -> int:
+    """Until the person leaves: Q in the window, Ctrl-C in the terminal."""
+    useless = [f"--{name}" for name in USELESS if getattr(args, name) not in (None, False)]
+    if useless:
+        raise InvalidValue(f"--hand {args.hand} is a haptic device: {' and '.join(useless)} cannot be used with it")
+    (name, _, option), begun = args.hand.partition(":"), time.monotonic()
+    device = DEVICES.get(name)
+    with ExitStack() as stack:
+        bridge = None if device is None else stack.enter_context(Launched(device, option))
+        session = opened(subject(), device, args.hand if bridge is None else bridge.name, args.record is not None)
+        stack.callback(session.halt)
+        session.publish(f"hand-{os.getpid()}")
+        keeps = None if args.record is None else stack.enter_context(record.Writer(args.record, session.metadata()))
+        window = _window(session)
+        if window is not None:
+            stack.callback(_end, window)
+        _say(session, device, window is not None)
+        session.start("wall")
+        with stop.between_blocks() as check:
+            try:
+                for _ in _turns(session, bridge, window, begun):
+                    _keep(session, keeps)
+                    check()
+            finally:  # whatever ends it: the recording is whole
+                session.halt()
+                _keep(session, keeps)
+                if keeps is not None:
+                    keeps.update(session.metadata())
+                    keeps.close()
+    return 0
+
+
+def opened(subject: Subject, device: Device | None, mailbox: str, recorded: bool) -> nt.Session:
+    """A session that this device leads: without a gauge, its force and rate those of the device."""
+    rig = subject.rig.copy()
+    rig["master.gauge"] = "no"
+    if device is not None:
+        rig["master.axes"], rig["master.rate"], rig["master.max_force"] = device.axes, 1.0 / device.period, device.force
+    width, height = subject.topography.size
+    try:
+        return nt.Session(
+            subject.scene, rig, surface=subject.touched(subject.scene), master=nt.hal.Mailbox(mailbox),
+            path=[(0.5 * width, 0.5 * height)], relative_accuracy=subject.accuracy, recorded=recorded,
+        )  # fmt: skip
+    except DeviceError as error:
+        if device is not None:
+            raise
+        raise InvalidValue(
+            f"--hand {mailbox}: valid are auto, none, {', '.join((*KINDS, *DEVICES))}, or the mailbox of a program of "
+            f"your own that runs (docs/devices.md); there is none: {error}"
+        ) from error
+
+
+def _window(session: nt.Session) -> Popen[str] | None:
+    """One that watches, where there is a display."""
+    try:
+        display.check()
+    except Error:
+        output.say("no display: the touch is shown here")
+        return None
+    return session.live()
+
+
+def _say(session: nt.Session, device: Device | None, is_shown: bool) -> None:
+    leave = "Q in the window leaves, Escape stops" if is_shown else "Ctrl-C ends the session"
+    title = OWN if device is None else device.title
+    print(f"{title}: leads the hand, at wall pace, for the sample is simulated; {leave}", flush=True)
+    print(session.guarantee().hand, flush=True)
+
+
+def _turns(session: nt.Session, bridge: Launched | None, window: Popen[str] | None, begun: float) -> Iterator[None]:
+    """Look after the bridge and show the force, until somebody leaves; each turn leaves time for what else is to do."""
+    with nt.frames.attach(session._name) as frames:
+        is_felt, due = False, 0.0
+        while window is None or window.poll() is None:
+            frame = frames.newest()
+            if frame is not None:
+                if not is_felt and abs(frame["motor_force"][2]) > FELT:
+                    is_felt = True
+                    print(f"first force on the hand {time.monotonic() - begun:.1f} s after the command", flush=True)
+                if window is None and time.monotonic() > due:
+                    due = time.monotonic() + LINE
+                    print(line(frame, session.state), flush=True)
+            yield
+            _check(session, bridge)
+            time.sleep(TURN)
+        if window is not None and window.poll():
+            raise Error("the window has died; the session has ended in order")
+
+
+def line(frame: Any, state: str) -> str:
+    """What is felt, for the terminal."""
+    hand, tip = float(frame["motor_force"][2]), float(frame["tip_force"][2])
+    return f"{float(frame['time']):8.1f} s  {state:8} hand {hand:+.2f} N  tip {in_words(tip, 'N', 3)}"
+
+
+def _keep(session: nt.Session, keeps: Any) -> None:
+    while keeps is not None:
+        block = session.read(5000)
+        if not len(block["time"]):
+            return
+        keeps.append(block)
+
+
+def _check(session: nt.Session, bridge: Launched | None) -> None:
+    """An error where the device is lost for good: its force has faded, and the recording is kept."""
+    if not session.progress.runs:
+        raise DeviceError(f"the session has ended: {session.progress.status}")
+    if bridge is not None and bridge.ended:
+        raise DeviceError(f"{bridge.ended}; its force is gone. Start the command again")
+    if session.state == "LATCHED" and LOST in session.reasons:
+        if bridge is not None:  # it hangs
+            bridge.process.kill()
+        raise DeviceError(
+            "the program of the device does not answer any more; its force is gone. Start the command again"
+        )
+
+
+def _end(window: Popen[str]) -> None:
+    if window.poll() is None and window.stdin is not None:
+        window.stdin.close()

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each haptic device's bridge against a mock of its maker's library: the same run for all of them."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import nanotouch as nt
+import pytest
+from desks import KINDS, OnDesk, awaited, placed
+from nanotouch_app.devices import bridge, hand, launch, table
+from nanotouch_app.live import device as live
+from nanotouch_app.live.subject import of_preset
+from nanotouch_app.main import main
+
+pytest.importorskip("aiohttp")
+
+
+ALL = "NANOTOUCH_ALL_BRIDGES" in os.environ  # make heavy
+
+
+@pytest.fixture(params=KINDS if ALL else KINDS[:2], ids=lambda kind: kind.name)
+def device(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[OnDesk]:
+    with placed(request.param, tmp_path, monkeypatch) as found:
+        yield found
+
+
+def session_of(device: OnDesk, mailbox: str) -> nt.Session:
+    return live.opened(of_preset("silicon_in_air"), table.named(device.kind.name), mailbox, recorded=True)
+
+
+def test_the_whole_run(device: OnDesk) -> None:
+    """Found, conforming, pressed and felt; silent, garbled and pulled out; killed: no force is left."""
+    with launch.Launched(table.named(device.kind.name), device.option, timeout=0.5) as running:
+        assert nt.hal.rehearse(nt.hal.Mailbox(running.name), period=0.05, duration=0.3).readings > 2
+        session = session_of(device, running.name)
+        session.start("wall")
+        try:
+            _is_felt(device, session)
+            _garbage_and_silence(device, session)
+            device.desk.present = 0.0  # pulled out, and in again
+            awaited(lambda: session.state != "RUN", "HOLD without the device")
+            device.desk.present = 1.0
+            awaited(lambda: session.state == "RUN" and device.size > 0.3, "RUN with the device back")
+            os.kill(running.process.pid, signal.SIGKILL)
+            awaited(lambda: session.state == "LATCHED", "LATCHED without the bridge")
+        finally:
+            session.halt()
+        assert "SIGKILL" in running.ended
+    assert device.size == 0.0  # another bridge has let go of it
+
+
+def _is_felt(device: OnDesk, session: nt.Session) -> None:
+    """Down, and a force comes against the hand, along that axis."""
+    awaited(lambda: session.state == "RUN", "RUN")
+    assert device.size < 0.3
+    distance = 0.0
+    while device.pressed() > -0.5 and distance < 0.05:
+        distance += 2e-4
+        device.hold("down", distance)
+        ticks = session.progress.ticks
+        awaited(lambda ticks=ticks: session.progress.ticks > ticks + 50, "the session goes on")
+    awaited(lambda: device.pressed() < -0.5, "a force against the hand")
+    assert device.size <= table.named(device.kind.name).force + 0.01  # of the wheel: a step of its level
+
+
+def _garbage_and_silence(device: OnDesk, session: nt.Session) -> None:
+    """Neither moves anything: the force is gone, and comes back."""
+    for what in ("garbage", "stall") if device.kind.name != "wheel" else ("stall",):
+        if (what, device.kind.name) == ("stall", "forcedimension") or (what, device.kind.name) == ("stall", "wheel"):
+            continue  # their libraries answer at once, whatever the device does
+        setattr(device.desk, what, 1.0)
+        awaited(lambda: session.state == "HOLD", f"HOLD with {what}")
+        awaited(lambda: device.size == 0.0, f"no force with {what}")
+        setattr(device.desk, what, 0.0)
+        awaited(lambda: session.state == "RUN" and device.size > 0.3, f"RUN after {what}")
+
+
+@pytest.fixture
+def omega(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[OnDesk]:
+    with placed(KINDS[1], tmp_path, monkeypatch) as found:
+        yield found
+
+
+def test_one_command_from_the_desk_to_a_recorded_force(
+    omega: OnDesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without a display the terminal shows the force; Ctrl-C ends it, and the recording is whole."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+
+    ended = threading.Event()
+
+    def hand() -> None:
+        distance = 0.0
+        while omega.pressed() > -0.5 and distance < 0.05:
+            distance += 1e-4
+            omega.hold("down", distance)
+            time.sleep(0.01)
+        if not ended.wait(0.2):
+            signal.raise_signal(signal.SIGINT)
+
+    person = threading.Timer(1.0, hand)
+    person.start()
+    out = tmp_path / "touch.mcap"
+    status = main(["live", "--hand", "forcedimension", "--record", str(out)])
+    ended.set()
+    person.join()
+    said, errors = capsys.readouterr()
+    assert status == 128 + signal.SIGINT, errors
+    assert "Force Dimension: leads the hand, at wall pace" in said
+    assert "force on the hand at most 5 N" in said
+    (seconds,) = re.findall(r"first force on the hand ([\d.]+) s after the command", said)
+    assert float(seconds) < 60.0
+    recording = nt.record.read(out)
+    assert "incomplete" not in recording.metadata
+    assert recording.motor_force.min() < -0.3
+    assert omega.size == 0.0
+
+
+MISSING = [
+    ("geomagic", None, "pyOpenHaptics is not installed .*pip install pyopenhaptics"),
+    ("geomagic", "no SDK", "OpenHaptics is not found .libHD.so.* Touch Device Driver must be there"),
+    ("geomagic", "unplugged", "no Touch opens under the name 'Default Device'"),
+    ("forcedimension", None, "forcedimension_core is not installed .*pip install forcedimension-core"),
+    ("forcedimension", "no SDK", "SDK is not found .*FDSDK names its folder"),
+    ("forcedimension", "unplugged", "no Force Dimension device opens: no device found"),
+    ("wheel", "unplugged", "no wheel, pad or joystick with constant forces is connected"),
+    ("wheel", "denied", "Permission denied: is it yours to read and write .group input, or a udev rule"),
+    ("inverse3", "no service", "nothing answers at ws://127.0.0.1:1. Haply's Inverse Service must run"),
+]
+
+
+@pytest.mark.parametrize(("name", "what", "words"), MISSING, ids=lambda value: str(value)[:14])
+def test_what_is_missing_is_said_in_words(
+    name: str, what: str | None, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    row = table.named(name)
+    for module in list(sys.modules):
+        if module.split(".")[0] in ("pyOpenHaptics", "forcedimension_core", "evdev"):
+            monkeypatch.delitem(sys.modules, module)
+    if what is None:
+        monkeypatch.setattr(bridge.importlib.util, "find_spec", lambda module: None)
+    monkeypatch.setattr(bridge, "PATIENCE", 0.2)
+    kind = next(kind for kind in KINDS if kind.name == ("wheel" if name == "inverse3" else name))
+    with placed(kind, tmp_path, monkeypatch, present=float(what == "denied")):
+        monkeypatch.setenv("NANOTOUCH_MOCK", what or "")
+        assert bridge.main([name, f"missing-{os.getpid()}", "--option", "ws://127.0.0.1:1" * (name == "inverse3")]) == 2
+    said = capsys.readouterr().err.strip()
+    assert "\n" not in said
+    assert re.search(words, said), said
+    assert row.title.split()[0] in said or what is None
+
+
+def test_a_force_beyond_the_range_or_no_number_reaches_no_device() -> None:
+    class Asks:
+        def ask(self) -> nt.mailbox.Request:
+            return nt.mailbox.Request(True, "RUN", 0, 0, self.target, 0.0, 0.0, 0.0)
+
+    asks = Asks()
+    box = bridge.Box(asks, hand.capabilities(3, 1e-3, 0.2, 4.0))  # type: ignore[arg-type]
+    for given, wanted in (
+        ((1.0, -2.0, 3.0), (1.0, -2.0, 3.0)), ((1e9, -1e9, 0.0), (4.0, -4.0, 0.0)),
+        ((math.nan, 1.0, 1.0), (0.0, 0.0, 0.0)), ((1.0, math.inf, 1.0), (0.0, 0.0, 0.0)),
+    ):  # fmt: skip
+        asks.target = given
+        assert box.ask().target == wanted
