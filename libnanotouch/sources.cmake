@@ -25,6 +25,7 @@ set(nanotouch_sources_forces
     forces/vdw.c
     forces/vdw_tip.c)
 set(nanotouch_sources_contact
+    contact/arrays.c
     contact/contact.c
     contact/dmt.c
     contact/hertz.c

@@ -81,7 +81,7 @@ FOUND_BY_CMAKE = "fit/models/"
 PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
     "what all need": "extras _core errors formats units guard _arrays awaiting _io",
-    "laws": "contact forces friction lateral",
+    "laws": "ufuncs contact forces friction lateral",
     "objects": "manipulation plasticity rheology",
     "measured": "images curves",
     "what there is": "scene reference scan",

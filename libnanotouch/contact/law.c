@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One contact law out of several, chosen at run time, for one indentation or an array of them. */
+ * One contact law out of several, chosen at run time, for one indentation; arrays of them: contact/arrays.c. */
 #include <math.h>
 #include <stddef.h>
 
 #include "contact/reduced.h"
-#include "core/strided.h"
 
 const char *nt_model_name(nt_model model)
 {
@@ -90,17 +89,4 @@ double nt_contact_law_grip_indentation(const nt_contact_law *law)
         return law->maugis.folds.grip_indentation * law->maugis.indentation_scale;
     }
     return NAN;
-}
-
-nt_status nt_contact_law_eval_n(const nt_contact_law *law, nt_branch branch, const nt_strided *arrays)
-{
-    nt_status first = NT_OK;
-    for (long i = 0; i < arrays->count; i++) {
-        nt_law_value value = {NAN, NAN, NAN, NAN};
-        const nt_status status = nt_contact_law_eval(law, arrays->in[i * arrays->in_stride], branch, &value);
-        if (first == NT_OK)
-            first = status;
-        nt_strided_store(arrays, i, value);
-    }
-    return first;
 }

@@ -13,13 +13,3 @@ nt_reduced_units nt_reduced_units_of(const nt_contact *contact)
     const double R = contact->radius, ratio = cube_root(energy / (4.0 / 3.0 * contact->effective_modulus) / R);
     return (nt_reduced_units){.load = energy * R, .radius = ratio * R, .indentation = ratio * ratio * R};
 }
-
-nt_law_value nt_reduced_to_si(const nt_law_value *reduced, const nt_reduced_units *units)
-{
-    return (nt_law_value){
-        .U = reduced->U * units->load * units->indentation,
-        .F = reduced->F * units->load,
-        .k = reduced->k * (units->load / units->indentation),
-        .a = reduced->a * units->radius,
-    };
-}

@@ -28,6 +28,14 @@ typedef struct nt_reduced_units {
 nt_reduced_units nt_reduced_units_of(const nt_contact *contact);
 
 /* Reduced {U, F, k, a} in SI. */
-nt_law_value nt_reduced_to_si(const nt_law_value *reduced, const nt_reduced_units *units);
+static inline nt_law_value nt_reduced_to_si(const nt_law_value *reduced, const nt_reduced_units *units)
+{
+    return (nt_law_value){
+        .U = reduced->U * units->load * units->indentation,
+        .F = reduced->F * units->load,
+        .k = reduced->k * (units->load / units->indentation),
+        .a = reduced->a * units->radius,
+    };
+}
 
 #endif

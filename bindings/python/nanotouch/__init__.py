@@ -44,7 +44,7 @@ _HOMES = {
 #: the public modules by their rooms; all are names of the package: ``nt.margins`` is ``nanotouch.touch.margins``
 _ROOMS = {
     "": "batch contact curves errors fit forces friction images lateral "
-    "manipulation maps plasticity plots reference rheology scan scene testing touch units",
+    "manipulation maps plasticity plots reference rheology scan scene testing touch ufuncs units",
     "contact.": "geometry",
     "scan.": "flow scanner steady tapping",
     "scene.": "interaction materials plan presets surface surface_file view",

@@ -20,6 +20,7 @@ from nanotouch import scan as scan
 from nanotouch import scene as scene
 from nanotouch import testing as testing
 from nanotouch import touch as touch
+from nanotouch import ufuncs as ufuncs
 from nanotouch import units as units
 from nanotouch.contact import Contact as Contact
 from nanotouch.contact import geometry as geometry
@@ -151,6 +152,7 @@ __all__ = [
     "tapping",
     "testing",
     "touch",
+    "ufuncs",
     "units",
     "view",
 ]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,6 +43,35 @@ def as_floats(values: ArrayLike, name: str) -> Floats:
     return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
 
 
+def is_foreign(values: Any) -> bool:
+    """Whether an array of another library wants to be asked how a ufunc goes over it (xarray, dask, pandas)."""
+    return hasattr(values, "__array_ufunc__") and not isinstance(values, np.ndarray | np.generic)
+
+
+def as_operand(values: Any, name: str) -> Any:
+    """What goes to a ufunc: a float, an array of real numbers as it is, or an array of another library."""
+    if type(values) is float:
+        return values
+    refuse_dressed(values, name)
+    return values if is_foreign(values) else as_floats(values, name)
+
+
+def law_over(ufuncs: Callable[[str], np.ufunc], operands: Sequence[Any]) -> LawValue:
+    """A law over operands, by its ufunc of all four values; arrays of other libraries take one value at a time."""
+    if any(map(is_foreign, operands)):
+        return LawValue(*(ufuncs(value)(*operands) for value in ("energy", "force", "stiffness", "radius")))
+    return as_law(ufuncs("")(*operands))
+
+
+def value_over(ufunc: np.ufunc, operands: Sequence[Any], out: Any, where: Any) -> Any:
+    """One value of a law over operands. Where ``where`` is false and nothing is given to write to, it is NaN."""
+    if where is True:
+        return plain(ufunc(*operands) if out is None else ufunc(*operands, out=out))
+    if out is None and not any(map(is_foreign, (*operands, where))):
+        out = np.full(np.broadcast_shapes(*map(np.shape, operands), np.shape(where)), np.nan)
+    return plain(ufunc(*operands, out=out, where=where))
+
+
 def check_between(name: str, value: float, unit: str, *, above: float, up_to: float = np.inf) -> None:
     """Raise :class:`~nanotouch.errors.InvalidValue` unless ``above`` < value <= ``up_to``."""
     if not above < value <= up_to:
@@ -65,11 +95,11 @@ class LawValue(NamedTuple):
     """contact radius [m]"""
 
 
-def as_law(columns: tuple[Floats, Floats, Floats, Floats]) -> LawValue:
+def as_law(columns: Sequence[Any]) -> LawValue:
     """Arrays of the C library as a :class:`LawValue`; 0-d becomes float."""
-    return LawValue(*(column if column.ndim else float(column) for column in columns))
+    return LawValue(*map(plain, columns))
 
 
-def plain(values: Floats) -> Any:
-    """0-d arrays become floats."""
-    return values if values.ndim else float(values)
+def plain(values: Any) -> Any:
+    """numpy's scalars and 0-d arrays become floats."""
+    return float(values) if isinstance(values, np.ndarray | np.generic) and values.ndim == 0 else values

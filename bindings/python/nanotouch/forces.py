@@ -8,30 +8,25 @@ the force stays as it is there. docs/forces.md says what each law leaves out and
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nanotouch import _core
-from nanotouch._arrays import Floats, LawValue, as_floats, as_law, check_between
+from nanotouch import _core, ufuncs
+from nanotouch._arrays import LawValue, as_floats, as_law, as_operand, check_between, law_over
 from nanotouch.errors import InvalidValue
 
 Boundary = Literal["potential", "charge"]
 BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 
 
-def _evaluate(law: Callable[[Floats, Floats], _core.LawColumns], gap: ArrayLike, **parameters: ArrayLike) -> LawValue:
-    """A law over the gaps; its parameters in the order of the C struct: one row for all gaps, or one for each.
+def _evaluate(law: str, gap: ArrayLike, **parameters: ArrayLike) -> LawValue:
+    """A law over the gaps; its parameters in the order of its ufunc, which broadcasts them.
 
     A function whose signature has that order hands on ``locals()``, all of what it was given."""
-    gaps = as_floats(gap, "gap")
-    numbers = [as_floats(value, name) for name, value in parameters.items()]
-    if all(number.ndim == 0 for number in numbers):
-        return as_law(law(gaps, np.array([numbers])))
-    gaps, *numbers = np.broadcast_arrays(gaps, *numbers)
-    return as_law(law(np.ascontiguousarray(gaps), np.stack([number.ravel() for number in numbers], axis=1)))
+    operands = [as_operand(value, name) for name, value in {"gap": gap, **parameters}.items()]
+    return law_over(lambda value: getattr(ufuncs, f"{law}_{value}" if value else law), operands)
 
 
 def vdw(
@@ -43,7 +38,7 @@ def vdw(
     minimum_gap: ArrayLike = 0.2e-9,
 ) -> LawValue:
     """Van der Waals, exact Hamaker sphere: -2 H R^3/(3 s^2 (s + 2R)^2), s = max(gap, minimum_gap) + roughness/2."""
-    return _evaluate(_core.vdw_eval, **locals())
+    return _evaluate("vdw", **locals())
 
 
 def vdw_derjaguin(
@@ -55,7 +50,7 @@ def vdw_derjaguin(
     minimum_gap: ArrayLike = 0.2e-9,
 ) -> LawValue:
     """Van der Waals, the paper's form -H R/(6 s^2), for s << R only: +36 % at 10 nm for R = 30 nm (erratum E1)."""
-    return _evaluate(_core.vdw_derjaguin_eval, **locals())
+    return _evaluate("vdw_derjaguin", **locals())
 
 
 def vdw_tip(
@@ -72,7 +67,7 @@ def vdw_tip(
 
     A cone without end is Argento and French, J. Appl. Phys. 80 (1996) 6081.
     """
-    return _evaluate(_core.vdw_tip_eval, **locals())
+    return _evaluate("vdw_tip", **locals())
 
 
 def capillary(
@@ -84,7 +79,7 @@ def capillary(
     film_thickness: ArrayLike = 0.0,
 ) -> LawValue:
     """Force of a standing meniscus: -4 pi gamma R [1 - (gap - 2e)/(2 r1)], the bracket held in 0..1 (erratum E3)."""
-    return _evaluate(_core.capillary_eval, **locals())
+    return _evaluate("capillary", **locals())
 
 
 class CapillaryPath(NamedTuple):
@@ -119,14 +114,14 @@ def electrostatic(
     gap: ArrayLike, *, radius: ArrayLike, potential: ArrayLike, minimum_gap: ArrayLike = 0.2e-9
 ) -> LawValue:
     """Conducting sphere at a potential [V] against a plane: -pi eps0 U^2 R^2/(h (h + R)) (Hudlet; erratum E5)."""
-    return _evaluate(_core.electrostatic_eval, **locals())
+    return _evaluate("electrostatic", **locals())
 
 
 def electrostatic_plate(
     gap: ArrayLike, *, area: ArrayLike, potential: ArrayLike, minimum_gap: ArrayLike = 0.2e-9
 ) -> LawValue:
     """Parallel plates of an area [m^2], -eps0 S U^2/(2 h^2): the paper's form, whose S = 4 pi R r1 is E5's mistake."""
-    return _evaluate(_core.electrostatic_plate_eval, **locals())
+    return _evaluate("electrostatic_plate", **locals())
 
 
 def electrostatic_tip(
@@ -142,12 +137,12 @@ def electrostatic_tip(
 
     In place of :func:`electrostatic`; the cone's integral is taken over its finite height.
     """
-    return _evaluate(_core.electrostatic_tip_eval, **locals())
+    return _evaluate("electrostatic_tip", **locals())
 
 
 def point_charge(gap: ArrayLike, *, radius: ArrayLike, charge: ArrayLike, minimum_gap: ArrayLike = 0.2e-9) -> LawValue:
     """Charge [C] trapped under a grounded sphere (image charge, exact): -q^2 R (R + h)/(4 pi eps0 (h (h + 2R))^2)."""
-    return _evaluate(_core.point_charge_eval, **locals())
+    return _evaluate("point_charge", **locals())
 
 
 def electrostatic_lever(
@@ -164,7 +159,7 @@ def electrostatic_lever(
 
     -eps0 U^2 w l cos(b) (sin(b)/b)^2/(2 D (D + l sin(b))), D = tip_height + gap; edges are neglected.
     """
-    return _evaluate(_core.electrostatic_lever_eval, **locals())
+    return _evaluate("electrostatic_lever", **locals())
 
 
 def lennard_jones(
@@ -179,7 +174,7 @@ def lennard_jones(
 
     ``gap`` is measured between the surface atoms: -2 pi w R at h = z0.
     """
-    return _evaluate(_core.lennard_jones_eval, **locals())
+    return _evaluate("lennard_jones", **locals())
 
 
 def double_layer(
@@ -202,7 +197,7 @@ def double_layer(
     if boundary not in BOUNDARIES:
         raise InvalidValue(f"boundary {boundary!r}: valid are {', '.join(BOUNDARIES)}")
     return _evaluate(
-        _core.double_layer_potential_eval if boundary == "potential" else _core.double_layer_charge_eval,
+        "double_layer_potential" if boundary == "potential" else "double_layer_charge",
         gap,
         radius=radius,
         debye_length=debye_length,
@@ -227,7 +222,7 @@ def hydration(
 
     Amplitudes W_i are energies of plates at gap 0 [J/m^2] (Israelachvili 2011, ch. 15).
     """
-    return _evaluate(_core.hydration_eval, **locals())
+    return _evaluate("hydration", **locals())
 
 
 def steric(
@@ -246,7 +241,7 @@ def steric(
     usual approximation p = 100 kT/s^3 exp(-2 pi h/T), within 24 % for 0.2 < h/T < 0.9.
     """
     return _evaluate(
-        _core.steric_exponential_eval if exponential else _core.steric_eval,
+        "steric_exponential" if exponential else "steric",
         gap,
         radius=radius,
         thickness=thickness,

@@ -1,35 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // contact.h, material.h
+#include <cmath>
 #include <limits>
+#include <vector>
 
-#include "chapters.h"
+#include "contact_table.h"
 
-static nt_contact contact_of(double radius, double effective_modulus, double work_of_adhesion, double cohesive_stress)
-{
-    return {radius, effective_modulus, work_of_adhesion, cohesive_stress};
-}
+// A law made ready for one branch, and its table where the tier asks for one.
+struct PreparedLaw {
+    nt_contact_law law{};
+    nt_branch branch;
+    nt_tier tier;
+    std::vector<nt_maugis_cell> cells;
+    nt_maugis_table table{};
 
-static nt_contact_law law_of(int model, const nt_contact &contact)
-{
-    nt_contact_law law;
-    nt_problem problem{};
-    raise_on(nt_contact_check(&contact, &problem), problem, "contact");
-    raise_on(nt_contact_law_init(&law, static_cast<nt_model>(model), &contact), "contact");
-    return law;
-}
+    PreparedLaw(int model, const nt_contact &contact, int on, int level)
+        : branch(static_cast<nt_branch>(on)), tier(static_cast<nt_tier>(level))
+    {
+        nt_problem problem{};
+        raise_on(nt_contact_check(&contact, &problem), problem, "contact");
+        raise_on(nt_contact_law_init(&law, static_cast<nt_model>(model), &contact), "contact");
+        if (needs_table(law.model, branch, tier))
+            raise_on(make_table(law, cells, table), "contact");
+    }
 
-static py::tuple eval(const nt_contact_law &law, const Array &indentation, int branch)
-{
-    return map_law(indentation, [&law, branch](double delta) {
-        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-        nt_law_value value{nan, nan, nan, nan};
-        (void)nt_contact_law_eval(&law, delta, static_cast<nt_branch>(branch), &value); // no solution there: NaN
+    // No solution there: NaN.
+    nt_law_value values(double indentation) const
+    {
+        nt_law_value value{NAN, NAN, NAN, NAN};
+        const nt_strided one = {&indentation, &value.U, &value.F, &value.k, &value.a, 1, 1, 1};
+        (void)(cells.empty() ? nt_contact_law_eval(&law, indentation, branch, &value)
+                             : nt_maugis_table_eval_n(&table, tier, branch, &one));
         return value;
-    });
-}
+    }
+    double force(double indentation) const
+    {
+        double force = NAN;
+        if (cells.empty())
+            return values(indentation).F;
+        (void)(tier == NT_TIER_TABLE ? nt_maugis_table_force_n : nt_maugis_table_polish_n)(&table, branch, &indentation,
+                                                                                           &force, 1);
+        return force;
+    }
+};
 
-static double indentation_at(const nt_contact_law &law, double force, int branch)
+static double indentation_at(const PreparedLaw &self, double force)
 {
+    const nt_contact_law &law = self.law;
     const nt_contact *contact = &law.maugis.contact;
     double delta = std::numeric_limits<double>::quiet_NaN();
     switch (law.model) {
@@ -38,10 +55,10 @@ static double indentation_at(const nt_contact_law &law, double force, int branch
     case NT_DMT:
         return nt_dmt_indentation(contact, force);
     case NT_JKR:
-        (void)nt_jkr_indentation(contact, force, static_cast<nt_branch>(branch), &delta);
+        (void)nt_jkr_indentation(contact, force, self.branch, &delta);
         break;
     case NT_MAUGIS:
-        (void)nt_maugis_indentation(&law.maugis, force, static_cast<nt_branch>(branch), &delta, nullptr);
+        (void)nt_maugis_indentation(&law.maugis, force, self.branch, &delta, nullptr);
         break;
     }
     return delta; // untouched, so NaN, on failure
@@ -49,15 +66,19 @@ static double indentation_at(const nt_contact_law &law, double force, int branch
 
 void bind_contact(py::module_ &module)
 {
-    py::class_<nt_contact_law>(module, "ContactLaw")
-        .def(py::init([](int model, double radius, double modulus, double adhesion, double stress) {
-                 return law_of(model, contact_of(radius, modulus, adhesion, stress));
-             }),
+    py::class_<PreparedLaw>(module, "ContactLaw")
+        .def(py::init([](int model, double radius, double modulus, double adhesion, double stress, int branch,
+                         int tier) { return PreparedLaw(model, {radius, modulus, adhesion, stress}, branch, tier); }),
              py::arg("model"), py::arg("radius"), py::arg("effective_modulus"), py::arg("work_of_adhesion"),
-             py::arg("cohesive_stress"))
-        .def("eval", &eval, py::arg("indentation"), py::arg("branch"))
+             py::arg("cohesive_stress"), py::arg("branch"), py::arg("tier"))
+        .def("force", [](const PreparedLaw &self, double indentation) { return self.force(indentation); })
+        .def("evaluate",
+             [](const PreparedLaw &self, double indentation) {
+                 const nt_law_value value = self.values(indentation);
+                 return py::make_tuple(value.U, value.F, value.k, value.a);
+             })
         .def("indentation",
-             [](const nt_contact_law &law, const Array &force, int branch) {
+             [](const PreparedLaw &self, const Array &force) {
                  py::array_t<double> out(std::vector<py::ssize_t>(force.shape(), force.shape() + force.ndim()));
                  const double *in = force.data();
                  double *delta = out.mutable_data();
@@ -65,16 +86,16 @@ void bind_contact(py::module_ &module)
                  {
                      py::gil_scoped_release release;
                      for (py::ssize_t i = 0; i < count; ++i)
-                         delta[i] = indentation_at(law, in[i], branch);
+                         delta[i] = indentation_at(self, in[i]);
                  }
                  return out;
              })
         .def_property_readonly("pull_off_force",
-                               [](const nt_contact_law &l) { return nt_contact_law_pull_off_force(&l); })
+                               [](const PreparedLaw &self) { return nt_contact_law_pull_off_force(&self.law); })
         .def_property_readonly("grip_indentation",
-                               [](const nt_contact_law &l) { return nt_contact_law_grip_indentation(&l); })
+                               [](const PreparedLaw &self) { return nt_contact_law_grip_indentation(&self.law); })
         .def_property_readonly("maugis_lambda",
-                               [](const nt_contact_law &l) { return nt_maugis_lambda(&l.maugis.contact); });
+                               [](const PreparedLaw &self) { return nt_maugis_lambda(&self.law.maugis.contact); });
     module.def("effective_modulus",
                [](double tip_modulus, double tip_ratio, double sample_modulus, double sample_ratio) {
                    return nt_effective_modulus({tip_modulus, tip_ratio}, {sample_modulus, sample_ratio});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// maugis_table.h, contact_equilibrium.h in Maugis' units: arrays of lambda and of what is given, of one length. Equal
+// contact_equilibrium.h in Maugis' units: arrays of lambda and of what is given, of one length. Equal
 // lambdas should stand together (the Python side sorts): what is prepared for one serves its whole run.
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,6 @@ namespace
 {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-// Below this many elements of one lambda the exact solver costs less than making a table.
-constexpr py::ssize_t table_pays = 150;
 
 // A contact of one lambda whose units are 1.
 struct Prepared {
@@ -25,19 +23,6 @@ struct Prepared {
     {
         const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.0};
         status = nt_maugis_init_lambda(&maugis, &contact, lambda);
-    }
-};
-
-struct Table {
-    std::vector<nt_maugis_cell> cells;
-    nt_maugis_table table;
-
-    explicit Table(const nt_maugis &maugis)
-    {
-        const nt_maugis_table_options options = nt_maugis_table_defaults();
-        cells.resize(static_cast<size_t>(nt_maugis_table_cells(&maugis, &options)));
-        raise_on(nt_maugis_table_init(&table, &maugis, &options, cells.data(), static_cast<int>(cells.size())),
-                 "table");
     }
 };
 
@@ -55,57 +40,6 @@ template <class Work> void for_each_run(const Array &lambda, py::ssize_t count, 
             end = first + 1; // NaN is unequal to itself
         work(Prepared(current), first, end - first);
     }
-}
-
-void force(const Array &lambda, const Array &d, int branch, int tier, Array &out)
-{
-    const double *in = d.data();
-    double *F = out.mutable_data();
-    const auto b = static_cast<nt_branch>(branch);
-    py::gil_scoped_release release;
-    for_each_run(lambda, d.size(), [=](const Prepared &made, py::ssize_t first, py::ssize_t count) {
-        if (made.status == NT_OK && tier != NT_TIER_EXACT && count >= table_pays) {
-            const Table table(made.maugis);
-            const auto array_force = tier == NT_TIER_TABLE ? nt_maugis_table_force_n : nt_maugis_table_polish_n;
-            (void)array_force(&table.table, b, in + first, F + first, static_cast<long>(count));
-            return;
-        }
-        for (py::ssize_t i = first; i < first + count; ++i) {
-            nt_law_value value{nan, nan, nan, nan};
-            if (made.status == NT_OK)
-                (void)nt_maugis_eval(&made.maugis, in[i], b, &value, nullptr);
-            F[i] = value.F;
-        }
-    });
-}
-
-py::tuple eval(const Array &lambda, const Array &d, int branch, int tier)
-{
-    py::array_t<double> U(d.size()), F(d.size()), k(d.size()), a(d.size());
-    const double *in = d.data();
-    double *out[4] = {U.mutable_data(), F.mutable_data(), k.mutable_data(), a.mutable_data()};
-    {
-        py::gil_scoped_release release;
-        for_each_run(lambda, d.size(), [&](const Prepared &made, py::ssize_t first, py::ssize_t count) {
-            const auto b = static_cast<nt_branch>(branch);
-            if (made.status != NT_OK) {
-                for (double *column : out)
-                    std::fill_n(column + first, count, nan);
-                return;
-            }
-            const nt_strided arrays = {
-                in + first, out[0] + first, out[1] + first, out[2] + first, out[3] + first, static_cast<long>(count), 1,
-                1};
-            if (tier != NT_TIER_EXACT && count >= table_pays) {
-                const Table table(made.maugis);
-                (void)nt_maugis_table_eval_n(&table.table, static_cast<nt_tier>(tier), b, &arrays);
-                return;
-            }
-            const nt_contact_law law = {NT_MAUGIS, made.maugis};
-            (void)nt_contact_law_eval_n(&law, b, &arrays);
-        });
-    }
-    return py::make_tuple(U, F, k, a);
 }
 
 // States at loads or radii: {d, U, F, k, a}.
@@ -155,9 +89,6 @@ py::array_t<double> folds(const Array &lambda)
 
 void bind_contact_reduced(py::module_ &module)
 {
-    module.def("reduced_force", &force, py::arg("lam"), py::arg("d"), py::arg("branch"), py::arg("tier"),
-               py::arg("out").noconvert());
-    module.def("reduced_eval", &eval, py::arg("lam"), py::arg("d"), py::arg("branch"), py::arg("tier"));
     module.def(
         "reduced_at_load",
         [](const Array &lambda, const Array &P, int branch) {

@@ -3,6 +3,7 @@
 #include "chapters.h"
 #include "nanotouch/version.h"
 
+void bind_contact_ufunc(py::module_ &module);
 void bind_host(py::module_ &module);
 
 PYBIND11_MODULE(_core, module)
@@ -11,6 +12,7 @@ PYBIND11_MODULE(_core, module)
     module.attr("version") = nt_version();
     bind_contact(module);
     bind_contact_reduced(module);
+    bind_contact_ufunc(module);
     bind_maugis_bank(module);
     bind_forces(module);
     bind_friction(module);

@@ -12,25 +12,23 @@ attracted non-contact branch down to its fold, then zero. ``"approach"`` is what
 ``"unstable"`` the equilibrium that no grip holds.
 
 ``tier`` trades accuracy for speed: ``"table"`` (error below 1.5e-6 of the larger of force and pull-off force, about 1
-ns), ``"polished"`` (rounding, away from the folds), ``"exact"`` (rounding). No tier is ever worse than that. Where a
-table would cost more than it saves, or none exists (few points of one ``lam``, the unstable branch, given loads and
-radii, folds), the exact solver answers in every tier.
+ns), ``"polished"`` (rounding, away from the folds), ``"exact"`` (rounding). No tier is ever worse than that, and none
+depends on how many points there are. A table is made for each ``lam`` (some 60 us): it pays from some hundred points
+on. Where none exists (the unstable branch, given loads and radii, folds), the exact solver answers in every tier.
 """
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nanotouch import _core
-from nanotouch._arrays import Floats, as_floats, plain
-from nanotouch.contact import Branch, branch_index
+from nanotouch import _core, ufuncs
+from nanotouch._arrays import Floats, as_floats, as_operand, is_foreign, plain, value_over
+from nanotouch.contact import TIERS as TIERS
+from nanotouch.contact import Branch, Tier, branch_index, tier_index
 from nanotouch.errors import InvalidValue
-
-Tier = Literal["table", "polished", "exact"]
-TIERS: tuple[Tier, ...] = get_args(Tier)
 
 
 class State(NamedTuple):
@@ -91,50 +89,46 @@ def as_lambda(lam: ArrayLike) -> Floats:
     return lambdas
 
 
-def _tier(tier: Tier) -> int:
-    if tier not in TIERS:
-        raise InvalidValue(f"tier {tier!r}: valid are {', '.join(TIERS)}")
-    return TIERS.index(tier)
+def _ufunc(value: str, branch: Branch, tier: Tier) -> np.ufunc:
+    branch_index(branch)  # checked
+    tier_index(tier)
+    return ufuncs.contact_ufunc("reduced", value, branch, tier)
 
 
 def force(
-    lam: ArrayLike, d: ArrayLike, branch: Branch = "stable", *, tier: Tier = "exact", out: Floats | None = None
+    lam: ArrayLike, d: ArrayLike, branch: Branch = "stable", *, tier: Tier = "exact", out: Any = None, where: Any = True
 ) -> Any:
     """Load P at an indentation.
 
     Parameters
     ----------
     lam, d : array_like
-        Maugis' lambda; reduced indentation.
+        Maugis' lambda; reduced indentation. Arrays of xarray, dask or pandas come back as such.
     branch, tier : str
         See the module.
     out : numpy.ndarray, optional
-        Where to put the result: C-contiguous float64 of the broadcast shape, for a single ``lam``.
+        Where to write the result.
+    where : array_like of bool, optional
+        Where to compute; elsewhere ``out`` stays as it is, or the result is NaN.
 
     Returns
     -------
     float or numpy.ndarray
         Reduced load, + repulsive.
     """
+    ufunc = _ufunc("force", branch, tier)
+    operands = as_operand(lam, "lam"), as_operand(d, "d")
+    if out is not None or where is not True or np.size(lam) == 1 or any(map(is_foreign, operands)):
+        return value_over(ufunc, operands, out, where)
     given = _Arguments(lam, d, "d")
-    which, level = branch_index(branch), _tier(tier)
-    if out is None:
-        flat = np.empty(given.values.shape)
-        _core.reduced_force(given.lam, given.values, which, level, flat)
-        return given.back(flat)
-    if given.order is not None:
-        raise InvalidValue("out is for a single lam")
-    if out.shape != given.shape or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:
-        raise InvalidValue(f"out must be a writeable C-contiguous float64 array of shape {given.shape}")
-    _core.reduced_force(given.lam, given.values, which, level, out.reshape(-1))
-    return out
+    return given.back(ufunc(given.lam, given.values))
 
 
 def evaluate(lam: ArrayLike, d: ArrayLike, branch: Branch = "stable", *, tier: Tier = "exact") -> State:
     """Energy, load, stiffness and radius at an indentation."""
+    ufunc = _ufunc("", branch, tier)
     given = _Arguments(lam, d, "d")
-    columns = _core.reduced_eval(given.lam, given.values, branch_index(branch), _tier(tier))
-    energy, load, stiffness_, radius_ = (given.back(column) for column in columns)
+    energy, load, stiffness_, radius_ = (given.back(column) for column in ufunc(given.lam, given.values))
     indentation_ = plain(np.broadcast_to(as_floats(d, "d"), given.shape).copy())
     return State(indentation_, energy, load, stiffness_, radius_)
 
@@ -151,7 +145,7 @@ def stiffness(lam: ArrayLike, d: ArrayLike, branch: Branch = "stable", *, tier: 
 
 def at_load(lam: ArrayLike, P: ArrayLike, branch: Branch = "stable", *, tier: Tier = "exact") -> State:
     """The equilibrium at a load; ``"stable"`` is the branch above the load fold, ``"unstable"`` the one below it."""
-    _tier(tier)
+    tier_index(tier)
     given = _Arguments(lam, P, "P")
     return State(
         *(given.back(column) for column in _core.reduced_at_load(given.lam, given.values, branch_index(branch)))
@@ -165,14 +159,14 @@ def indentation(lam: ArrayLike, P: ArrayLike, branch: Branch = "stable", *, tier
 
 def at_radius(lam: ArrayLike, a: ArrayLike, *, tier: Tier = "exact") -> State:
     """The equilibrium at a contact radius >= 0: each occurs once on the contact branch."""
-    _tier(tier)
+    tier_index(tier)
     given = _Arguments(lam, a, "a")
     return State(*(given.back(column) for column in _core.reduced_at_radius(given.lam, given.values)))
 
 
 def folds(lam: ArrayLike, *, tier: Tier = "exact") -> Folds:
     """Folds and the point of zero load."""
-    _tier(tier)
+    tier_index(tier)
     lambdas = as_lambda(lam)
     columns = np.moveaxis(_core.reduced_folds(lambdas.reshape(-1)), -1, 0).reshape((8, *lambdas.shape))
     kinds = np.where(columns[3] == 1.0, "contact", np.where(columns[3] == 0.0, "non-contact", ""))

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// contact.h, maugis_table.h as ufuncs: a model, a branch, a tier, and a value of {U, F, k, a} or all four.
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <vector>
+
+#include "contact_table.h"
+#include "ufunc.h"
+
+namespace
+{
+
+// The models of contact.h, and Maugis-Dugdale in its own units: (lam, d) in place of (indentation, radius, ...).
+constexpr int reduced_model = NT_MAUGIS + 1;
+constexpr int parameter_counts[] = {2, 3, 3, 4, 1};
+
+struct ContactUfunc {
+    int model;
+    nt_branch branch;
+    nt_tier tier;
+    int value; // 0 .. 3 of {U, F, k, a}, or -1 for all
+};
+
+// A law made ready, and its table where one was asked for.
+struct Prepared {
+    int model = -1;
+    std::array<double, 4> parameters{};
+    nt_status status = NT_OK;
+    nt_problem problem{};
+    nt_contact_law law{};
+    std::vector<nt_maugis_cell> cells;
+    nt_maugis_table table{};
+    bool has_table = false;
+
+    void make();
+};
+
+void Prepared::make()
+{
+    has_table = false;
+    law = {};
+    problem = {};
+    if (model == reduced_model) {
+        const double lambda = parameters[0];
+        const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.0};
+        law.model = NT_MAUGIS;
+        status = nt_maugis_init_lambda(&law.maugis, &contact, lambda);
+        if (status == NT_E_RANGE)
+            problem = problem_of("lam", "", lambda, NT_MAUGIS_LAMBDA_MIN, NT_MAUGIS_LAMBDA_MAX);
+        return;
+    }
+    nt_contact contact = {parameters[0], parameters[1], model == NT_HERTZ ? 0.0 : parameters[2],
+                          model == NT_MAUGIS ? parameters[3] : 1.0};
+    status = nt_contact_check(&contact, &problem);
+    if (status == NT_OK)
+        status = nt_contact_law_init(&law, static_cast<nt_model>(model), &contact);
+}
+
+bool wants_table(const ContactUfunc &self, const Prepared &made)
+{
+    return needs_table(made.law.model, self.branch, self.tier);
+}
+
+// The last laws of this thread: one is made once for all calls that follow each other, and for masked or split arrays.
+Prepared &prepared(const ContactUfunc &self, const std::array<double, 4> &parameters)
+{
+    thread_local std::array<Prepared, 4> last;
+    thread_local size_t oldest = 0;
+    Prepared *found = nullptr;
+    for (Prepared &one : last)
+        if (one.model == self.model && std::memcmp(one.parameters.data(), parameters.data(), sizeof parameters) == 0)
+            found = &one;
+    if (!found) {
+        found = &last[oldest];
+        oldest = (oldest + 1) % last.size();
+        found->model = self.model;
+        found->parameters = parameters;
+        found->make();
+    }
+    if (found->status == NT_OK && wants_table(self, *found) && !found->has_table) {
+        found->status = make_table(found->law, found->cells, found->table);
+        found->has_table = true;
+    }
+    return *found;
+}
+
+// What fails is NaN, as no branch is where it is not.
+void evaluate(const ContactUfunc &self, const Prepared &made, const nt_strided &arrays)
+{
+    if (!wants_table(self, made))
+        (void)nt_contact_law_eval_n(&made.law, self.branch, &arrays);
+    else if (self.value == 1)
+        (void)(self.tier == NT_TIER_TABLE ? nt_maugis_table_force_n : nt_maugis_table_polish_n)(
+            &made.table, self.branch, arrays.in, arrays.F, arrays.count);
+    else
+        (void)nt_maugis_table_eval_n(&made.table, self.tier, self.branch, &arrays);
+}
+
+void fill_nan(const nt_strided &arrays)
+{
+    for (double *column : {arrays.U, arrays.F, arrays.k, arrays.a})
+        for (long i = 0; column && i < arrays.count; ++i)
+            column[i * arrays.out_stride] = std::nan("");
+}
+
+void loop(char **args, const py::ssize_t *dimensions, const py::ssize_t *steps, void *data)
+{
+    const ContactUfunc &self = *static_cast<const ContactUfunc *>(data);
+    const int parameters = parameter_counts[self.model];
+    const UfuncArrays at = {args, steps, self.model == reduced_model ? 1 : 0, 1 + parameters};
+    const QuietFlags quiet;
+    for (py::ssize_t first = 0, end = 0; first < dimensions[0]; first = end) {
+        end = at.run_end(first, dimensions[0]);
+        std::array<double, 4> values{};
+        for (int j = 0; j < parameters; ++j)
+            values[static_cast<size_t>(j)] = at.parameter(j, first);
+        const Prepared &made = prepared(self, values);
+        const bool missing = self.model == reduced_model && std::isnan(values[0]);
+        if (made.status != NT_OK && !missing)
+            return set_ufunc_error(made.status, made.problem, self.model == reduced_model ? "lam" : "contact");
+        const auto over = [&](const nt_strided &arrays) { missing ? fill_nan(arrays) : evaluate(self, made, arrays); };
+        at.evaluate(first, end, self.value, over, self.value == 1 && wants_table(self, made));
+    }
+}
+
+py::object contact_ufunc(int model, int branch, int tier, int value, const std::string &name, const std::string &doc)
+{
+    static std::deque<ContactUfunc> all;
+    all.push_back({model, static_cast<nt_branch>(branch), static_cast<nt_tier>(tier), value});
+    return make_ufunc(&loop, &all.back(), 1 + parameter_counts[model], value < 0 ? 4 : 1, name, doc);
+}
+
+} // namespace
+
+void bind_contact_ufunc(py::module_ &module)
+{
+    module.def("contact_ufunc", &contact_ufunc, py::arg("model"), py::arg("branch"), py::arg("tier"), py::arg("value"),
+               py::arg("name"), py::arg("doc"));
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A block of a contact law over an array, small enough for the first cache; private to contact/. */
+#ifndef NANOTOUCH_CONTACT_BLOCK_H
+#define NANOTOUCH_CONTACT_BLOCK_H
+
+#include "nanotouch/contact.h"
+
+enum { NT_BLOCK = 64 };
+
+typedef struct nt_law_block {
+    double in[NT_BLOCK]; /* indentations [m] */
+    double U[NT_BLOCK], F[NT_BLOCK], k[NT_BLOCK], a[NT_BLOCK];
+} nt_law_block;
+
+/* JKR, STABLE or APPROACH, with the bits of nt_jkr_eval; w > 0. Returns 0, and fills nothing, where an indentation is
+ * beyond what its reduced form can tell from Hertz. What is not finite gives any value. */
+int nt_jkr_block(const nt_contact *contact, nt_branch branch, nt_law_block *block);
+
+#endif
