@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from nanotouch.extras import ADDS
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.skipif(not (ROOT / "tools").is_dir(), reason="only in a checkout")
@@ -58,3 +59,16 @@ def test_the_list_of_parts_is_that_of_the_lock() -> None:
     ]
     assert len({str(one["bom-ref"]) for one in found}) == len(found)
     assert all(one["purl"] == f"pkg:pypi/{one['name']}@{one['version']}" for one in found)
+
+
+def test_the_page_on_installing_knows_every_extra() -> None:
+    text = (ROOT / "docs/howto/install.md").read_text(encoding="utf-8")
+    assert dict(re.findall(r"^\| `(\w+)` \| (.+?) \|$", text, re.MULTILINE)) == {
+        name: re.sub(r"(nanotouch [\w -]+)$", r"`\1`", adds) for name, adds in ADDS.items()
+    }
+
+
+def test_no_page_installs_by_a_name_that_no_index_has() -> None:
+    """Until the first release is published; then it may."""
+    for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
+        assert not re.search(r"pip install '?nanotouch\b(?!-)", page.read_text(encoding="utf-8")), page.name
