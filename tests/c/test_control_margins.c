@@ -75,7 +75,7 @@ static void jury_limit_is_that_of_the_eigenvalues(void **state)
     }
 }
 
-/* The figures printed in docs/margins.md, three digits. */
+/* The figures printed in docs/evidence/margins.md, three digits. */
 static void jury_limit_of_the_paper_rig(void **state)
 {
     (void)state;

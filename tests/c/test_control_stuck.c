@@ -3,7 +3,7 @@
 #include "larger.h"
 #include "supervisor_fixture.h"
 
-/* Ticks to each reaction, as printed in docs/safety.md. */
+/* Ticks to each reaction, as printed in docs/evidence/safety.md. */
 static int ticks_until(input *in, nt_state wanted, double stage_speed)
 {
     for (int tick = 1; tick < 100000; tick++) {
