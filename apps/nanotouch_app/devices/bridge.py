@@ -19,12 +19,14 @@ import signal
 import sys
 import threading
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from nanotouch.errors import DeviceError, Error, missing
 from nanotouch.touch import mailbox
 from nanotouch.touch.hal import Capabilities, Reading
 
+from nanotouch_app.devices import calibration
 from nanotouch_app.devices.table import DEVICES, Device, named
 
 PATIENCE = 6.0
@@ -47,8 +49,11 @@ def module_of(device: Device) -> Any:
 class Box:
     """The mailbox as a device sees it. A force is finite and within the range of its channels, else there is none."""
 
-    def __init__(self, device: mailbox.Device, capabilities: Capabilities) -> None:
+    def __init__(
+        self, device: mailbox.Device, capabilities: Capabilities, found: calibration.Calibration | None = None
+    ) -> None:
         self._device = device
+        self._found = calibration.Calibration() if found is None else found
         self._limits = {row.axis: row.maximum for row in capabilities.channels if row.driven}
         self.trouble = ""
         """why there is no reading, in words"""
@@ -57,7 +62,7 @@ class Box:
 
     def publish(self, reading: Reading) -> None:
         """A new measurement."""
-        self._device.publish(reading)
+        self._device.publish(reading._replace(position=self._found.place(reading.position)))
         self.first.set()
 
     def beat(self) -> None:
@@ -67,23 +72,24 @@ class Box:
     def ask(self) -> mailbox.Request:
         """What the session wants."""
         request = self._device.ask()
-        return request._replace(target=self._bounded(request.target))
+        if not request.is_armed or not all(map(math.isfinite, request.target)):
+            return request._replace(target=NOTHING)
+        return request._replace(target=self._bounded(self._found.force(request.target)))
 
     def _bounded(self, force: Sequence[float]) -> tuple[float, float, float]:
-        if not all(map(math.isfinite, force)):
-            return NOTHING
         x, y, z = (
             max(-limit, min(limit, f)) for f, limit in ((f, self._limits.get(i, 0.0)) for i, f in enumerate(force))
         )
         return x, y, z
 
 
-def serve(device: Device, name: str, option: str, timeout: float, stopped: threading.Event) -> None:
+def serve(device: Device, args: argparse.Namespace, stopped: threading.Event) -> None:
     """Until it is stopped; :class:`~nanotouch.errors.Error` in words where no reading comes."""
     module = module_of(device)
+    found = calibration.read(args.calibration) if args.calibration else None
     capabilities = module.capabilities()
-    with mailbox.Device(name, capabilities, timeout=timeout) as opened:
-        box = Box(opened, capabilities)
+    with mailbox.Device(args.name, capabilities, timeout=args.timeout) as opened:
+        box = Box(opened, capabilities, found)
         late: list[str] = []
 
         def announce() -> None:
@@ -95,7 +101,7 @@ def serve(device: Device, name: str, option: str, timeout: float, stopped: threa
 
         threading.Thread(target=announce, daemon=True).start()
         try:
-            module.serve(box, option, stopped)
+            module.serve(box, args.option, stopped)
         except DeviceError as error:
             late.append(str(error))
         if late:
@@ -143,6 +149,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--timeout", type=float, default=TIMEOUT, metavar="S", help="of the mailbox (default: %(default)g)"
     )
+    parser.add_argument("--calibration", type=Path, metavar="FILE", help="as nanotouch live --calibrate has kept it")
     parser.add_argument("--child", action="store_true", help="end with the input")
     parser.add_argument("--release", action="store_true", help="let go of the device, and end")
     return parser
@@ -162,7 +169,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if args.release:
             release(device, args.option)
         else:
-            serve(device, args.name, args.option, args.timeout, stopped)
+            serve(device, args, stopped)
     except Error as error:
         print(error, file=sys.stderr, flush=True)
         return 2

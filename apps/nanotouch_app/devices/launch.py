@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 from contextlib import suppress
+from pathlib import Path
 from typing import Self
 
 from nanotouch.errors import DeviceError
@@ -26,13 +27,14 @@ _numbers = itertools.count(1)
 class Launched:
     """A bridge that is ready; use it in a ``with`` statement."""
 
-    def __init__(self, device: Device, option: str = "", timeout: float = TIMEOUT) -> None:
+    def __init__(self, device: Device, option: str = "", timeout: float = TIMEOUT, found: Path | None = None) -> None:
         self.device, self.option = device, option
         self.name = f"{device.name}-{os.getpid()}-{next(_numbers)}"
         """of its mailbox"""
         self._folder = Scratch()
         self._said = self._folder.path / "said.txt"
-        command = self._command("--child", "--timeout", str(timeout))
+        more = [] if found is None else ["--calibration", str(found)]
+        command = self._command("--child", "--timeout", str(timeout), *more)
         with open(self._said, "wb") as errors:
             self.process = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, env=_environment(), text=True,

@@ -66,6 +66,9 @@ def add_parser(subparsers: Any) -> None:
                         help=f"a haptic device that leads the hand: {', '.join(DEVICES)}, with :OPTION where it needs "
                              "one (docs/devices.md), or the mailbox of a program of your own; or gamepad, spacemouse, "
                              "auto or none, beside mouse and keys (default: %(default)s)")  # fmt: skip
+    parser.add_argument(
+        "--calibrate", action="store_true", help="the device of --hand first: 30 s, guided, kept in a file"
+    )
     parser.add_argument("--browser", action="store_true",
                         help="show it in browsers instead of a window: prints the links (docs/page.md)")  # fmt: skip
     parser.add_argument("--port", type=whole_number(0, 65535), metavar="N",
@@ -85,6 +88,8 @@ def run(args: argparse.Namespace) -> int:
     is_recording = _checked(args)
     if device.is_named(args.hand) and not is_recording:
         return device.touch(args, partial(_subject, args))
+    if args.calibrate:
+        raise InvalidValue(f"--calibrate is for a haptic device: --hand {', '.join(DEVICES)}")
     if args.film is not None:
         return _film(args)
     front = _browsers(args, is_recording) if args.browser else _window(args)

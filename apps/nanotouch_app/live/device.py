@@ -6,9 +6,11 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from pathlib import Path
 from subprocess import Popen
 from typing import Any
 
@@ -18,6 +20,7 @@ from nanotouch.errors import DeviceError, Error, InvalidValue
 from nanotouch.units import in_words
 
 from nanotouch_app.common import output, stop
+from nanotouch_app.devices import calibration, guide
 from nanotouch_app.devices.launch import Launched
 from nanotouch_app.devices.table import DEVICES, Device
 from nanotouch_app.live import display
@@ -44,8 +47,14 @@ def touch(args: argparse.Namespace, subject: Callable[[], Subject]) -> int:
         raise InvalidValue(f"--hand {args.hand} is a haptic device: {' and '.join(useless)} cannot be used with it")
     (name, _, option), begun = args.hand.partition(":"), time.monotonic()
     device = DEVICES.get(name)
+    if args.calibrate and device is None:
+        raise InvalidValue(f"--calibrate: valid for --hand {', '.join(DEVICES)}")
     with ExitStack() as stack:
-        bridge = None if device is None else stack.enter_context(Launched(device, option))
+        bridge = (
+            None
+            if device is None
+            else stack.enter_context(Launched(device, option, found=_calibrated(args, device, option)))
+        )
         session = opened(subject(), device, args.hand if bridge is None else bridge.name, args.record is not None)
         stack.callback(session.halt)
         session.publish(f"hand-{os.getpid()}")
@@ -67,6 +76,24 @@ def touch(args: argparse.Namespace, subject: Callable[[], Subject]) -> int:
                     keeps.update(session.metadata())
                     keeps.close()
     return 0
+
+
+def _calibrated(args: argparse.Namespace, device: Device, option: str) -> Path | None:
+    """The file of its calibration, made now where that is asked for; None: there is none."""
+    path = calibration.path_of(device.name)
+    if not (args.calibrate or path.is_file()) and sys.stdin.isatty():
+        args.calibrate = input(f"{device.title} is not calibrated. Do it now, 30 s? [y/N] ").strip().lower() == "y"
+    if args.calibrate:
+        begun = time.monotonic()
+        found = guide.calibrate(device, option, lambda step: print(f"  {step}", flush=True))
+        calibration.write(path, found)
+        output.say(f"calibrated in {time.monotonic() - begun:.0f} s: {guide.words(found)}; kept in {path}")
+    elif path.is_file():
+        calibration.read(path)  # a file that is none is refused here, not by the bridge
+    else:
+        output.say("not calibrated, so the middle and the axes are the maker's: --calibrate, 30 s")
+        return None
+    return path
 
 
 def opened(subject: Subject, device: Device | None, mailbox: str, recorded: bool) -> nt.Session:
