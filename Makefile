@@ -47,7 +47,7 @@ page:  ## the touch in one HTML file, build/page/nanotouch-touch.html; needs nod
 	@cp build/page/nanotouch-touch.html "$$($(VENV)/python -c 'import nanotouch_app.browser as b; print(b.__path__[0])')"
 
 check: page  ## the page in Chromium: touched, changed, offline, attacked; some minutes
-	@node --test --test-concurrency=1 tests/page/test_*.mjs
+	@nice node --test --test-concurrency=1 tests/page/test_*.mjs
 
 fuzz:  ## random input to the C library, with sanitizers; about a minute
 	@tools/setup.sh fuzz

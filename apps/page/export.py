@@ -21,7 +21,7 @@ from nanotouch.manipulation.particles import polystyrene
 from nanotouch.touch import host as c_host
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.supervisor import REASONS
-from nanotouch_app.live import balls, host, look, readings, relief, seen, stage
+from nanotouch_app.live import balls, host, instrument, look, readings, relief, seen, stage
 from nanotouch_app.live.subject import PRESETS, felt, of_preset
 
 STEPS = 65535  # of a height in the page
@@ -73,7 +73,8 @@ def constants() -> dict[str, Any]:
     taken = {host: "SPEEDS REWIND STEP_TICKS VALUES",
              seen: "HISTORY SLICES TAIL TRACE TRACE_STEP STALE READINGS LAXER ANSWERS",
              relief: "RELIEF SLENDER LADDER HIGHEST",
-             stage: "TIP_HEIGHT LEVER LEVER_POINTS BALL FAR BEND SHADOW LIFTED VIEWS",
+             stage: "FLOOR LIGHTS FAR LIFTED VIEWS",
+             instrument: "TIP_HEIGHT LEVER LEVER_POINTS NOSE TILT CHIP CAST BALL BEND SHADOW SHADES BEAM_SHADES",
              balls: "PARTICLE RING THICK",
              readings: "TIP_STEP HAND_STEPS NOTED", look: "PROPERTY_COLOURS PROPERTY_NAMES"}  # fmt: skip
     shared = {name: getattr(module, name) for module, names in taken.items() for name in names.split()}

@@ -64,7 +64,7 @@ nt_status nt_host_compose(nt_session_host *host, nt_session_setup *setup, const 
                           nt_problem *problem)
 {
     if (!(ground->relief <= MAX_RELIEF))
-        return nt_problem_set(problem, "relief", "m", ground->relief, 0.0, MAX_RELIEF);
+        return nt_problem_set(problem, "height of the surface", "m", ground->relief, 0.0, MAX_RELIEF);
     nt_plan *plan = &host->spare;
     const nt_plan_inputs inputs = {.scene = &setup->scene, .demand = &setup->demand};
     const nt_status status = nt_plan_make(plan, &inputs, problem);

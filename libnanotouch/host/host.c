@@ -51,6 +51,7 @@ void nt_host_lay(nt_session_host *host, const nt_host_subject *subject)
     host->pushed = subject->pushed;
     host->done_count = host->undone_count = host->kept_count = host->reopens = host->is_laid = 0;
     host->slider_count = 0;
+    host->guide.touched = 0;
     nt_trainer_end(host);
 }
 
@@ -115,7 +116,7 @@ nt_status nt_host_learn(nt_session_host *host)
     if (before.stiffness != now->stiffness || before.zero != now->zero || before.facts.load != now->facts.load)
         nt_energy_begin(host);
     host->bounds = bounds_of(host->session);
-    host->due |= NT_DUE_WORLD;
+    host->due |= NT_DUE_WORLD | NT_DUE_GUIDE;
     return status;
 }
 
@@ -187,6 +188,7 @@ void nt_host_follow(nt_session_host *host, double elapsed)
         return;
     nt_proxy_follow(&host->hand, &host->frame, elapsed);
     nt_host_aim(host);
+    nt_guide_follow(host);
 }
 
 nt_host_state nt_host_state_of(const nt_session_host *host)
@@ -330,6 +332,8 @@ static nt_status ask_world(nt_session_host *host, const nt_host_asked *asked)
 nt_status nt_host_ask(nt_session_host *host, const nt_host_asked *asked)
 {
     const char *what = asked->what;
+    if (!strcmp(what, "device"))
+        return nt_guide_by(host, asked->text);
     if (!host->session)
         return nt_host_refuse_filled(host, "nothing is touched yet: lay a sample first", NULL);
     if (!strcmp(what, "move") || !strcmp(what, "wheel") || !strcmp(what, "press") || !strcmp(what, "retract"))
@@ -343,7 +347,7 @@ nt_status nt_host_ask(nt_session_host *host, const nt_host_asked *asked)
     if (!strcmp(what, "say"))
         return ask_answer(host, asked->value[0]);
     if (!strcmp(what, "report")) { /* a view that has just come knows nothing */
-        host->due |= NT_DUE_WORLD | NT_DUE_SLIDERS | (host->plan.dents ? NT_DUE_DENTS : 0u);
+        host->due |= NT_DUE_WORLD | NT_DUE_SLIDERS | NT_DUE_GUIDE | (host->plan.dents ? NT_DUE_DENTS : 0u);
         return NT_OK;
     }
     if (!strcmp(what, "release")) { /* another program leads the hand */

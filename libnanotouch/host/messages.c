@@ -173,6 +173,14 @@ static void tell_refused(nt_session_host *host, nt_text *json)
         nt_json_text(json, "field", host->field);
 }
 
+static void tell_guide(nt_session_host *host, nt_text *json)
+{
+    char words[NT_HOST_LINE];
+    nt_text text = nt_text_in(words, sizeof words);
+    nt_line_guide(host, &text);
+    nt_json_text(json, "text", words);
+}
+
 static void tell_note(nt_session_host *host, nt_text *json)
 {
     nt_json_text(json, "text", host->note);
@@ -185,7 +193,8 @@ static const struct {
 } messages[] = {{NT_DUE_SLIDERS, "sliders", tell_sliders}, {NT_DUE_WORLD, "world", tell_world},
                 {NT_DUE_DENTS, "dents", tell_dents},       {NT_DUE_PARTICLES, "particles", nt_trainer_tell_particles},
                 {NT_DUE_EVENT, "event", nt_event_tell},    {NT_DUE_TASK, "task", nt_trainer_tell},
-                {NT_DUE_NOTE, "note", tell_note},          {NT_DUE_REFUSED, "refused", tell_refused}};
+                {NT_DUE_GUIDE, "guide", tell_guide},       {NT_DUE_NOTE, "note", tell_note},
+                {NT_DUE_REFUSED, "refused", tell_refused}};
 
 long nt_host_tell(nt_session_host *host, char *text, size_t size)
 {

@@ -4,8 +4,7 @@
 
 static const nt_host_preset presets[] = {
     {"silicon_in_air", "Silicon in air", "silicon_in_air",
-     "Scroll down until the water snaps, then pull up until it tears. Then set the humidity to 0.", "", 0.01,
-     NT_HOST_NOTHING},
+     "Touch it and pull off. Then set the humidity to 0, and do it again.", "", 0.01, NT_HOST_NOTHING},
     {"silicon_on_gold", "Silicon on gold", "silicon_on_gold", "Follow a terrace at a steady force and feel its edge.",
      "", 0.01, NT_HOST_NOTHING},
     {"mica_in_air", "Mica in dry air", "mica_in_air",

@@ -19,7 +19,8 @@ enum {
     NT_DUE_DENTS = 16,
     NT_DUE_PARTICLES = 32,
     NT_DUE_TASK = 64,
-    NT_DUE_EVENT = 128
+    NT_DUE_EVENT = 128,
+    NT_DUE_GUIDE = 256
 };
 
 /* A particle that was pushed: where it lay before. */
@@ -50,6 +51,12 @@ typedef struct nt_host_event {
     double force;       /* of the event that is told next [N] */
     const char *kind;
 } nt_host_event;
+
+/* What a person is told to do next: down, up once it touches, and then what the sample is for. */
+typedef struct nt_host_guide {
+    int device; /* that the hand is moved with: a row of lines.c */
+    int touched, touches, tasked;
+} nt_host_guide;
 
 /* Sums of the last touch. */
 typedef struct nt_host_energy {
@@ -87,6 +94,7 @@ struct nt_session_host {
     nt_host_energy energy;
     nt_host_bounds bounds;
     nt_host_event event;
+    nt_host_guide guide;
     nt_trainer trainer;
 };
 
@@ -141,5 +149,8 @@ double nt_law_jump_gap(const nt_plan *plan, double spring); /* 0: none [m] */
 
 /* lines.c: state in words */
 void nt_line_felt(const nt_session_host *host, nt_text *text);
+void nt_line_guide(const nt_session_host *host, nt_text *text);
+void nt_guide_follow(nt_session_host *host);                      /* told again where it has changed */
+nt_status nt_guide_by(nt_session_host *host, const char *device); /* what the hand is moved with */
 
 #endif

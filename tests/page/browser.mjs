@@ -51,4 +51,10 @@ export async function later(page, draws) {
   const before = await value(page, () => window.nanotouch.counters.draws);
   await until(page, (wanted) => window.nanotouch.counters.draws >= wanted, before + draws);
 }
+// It begins with one slider and one chart; this shows all sliders, charts and buttons.
+export async function all(page) {
+  await page.focus("#view");
+  await page.keyboard.press("d");
+  await until(page, () => document.body.classList.contains("all"));
+}
 export const value = (page, what, argument) => page.evaluate(what, argument);

@@ -3,7 +3,7 @@
 // name, and a system that asks for less motion.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { FILE, open, touched, until, value, visit } from "./browser.mjs";
+import { all, FILE, open, touched, until, value, visit } from "./browser.mjs";
 
 const TEXT = 4.5, PARTS = 3; // contrast of text (1.4.3), of controls and what is drawn (1.4.11)
 let chromium;
@@ -45,6 +45,10 @@ for (const colorScheme of ["light", "dark"])
     await page.goto(FILE);
     await touched(page);
     assert.equal(await value(page, () => document.body.dataset.look), colorScheme);
+    const first = (await value(page, texts)).found; // one sentence, one slider, three buttons
+    assert.ok(first.length >= 7 && first.length <= 10, JSON.stringify(first));
+    assert.deepEqual(first.filter(({ contrast }) => contrast < TEXT), []);
+    await all(page);
     for (const sheet of ["", "c", "t", "e", "h"]) {
       if (sheet) await page.locator(`[data-own=${sheet}]`).click();
       const { found, drawn } = await value(page, texts);
@@ -67,8 +71,9 @@ const shown = "button, a[href], input:not([type=file]), select, textarea, [tabin
 test("each control that is seen is reached by Tab, with a name and a ring around it", async () => {
   const { page } = await visit(chromium.context, FILE);
   await touched(page);
-  for (const sheet of ["", "c", "t", "e", "h"]) {
-    if (sheet) await page.locator(`[data-own=${sheet}]`).click();
+  for (const sheet of ["first", "", "c", "t", "e", "h"]) { // as it begins, and with all that there is
+    if (sheet === "") await all(page);
+    else if (sheet !== "first") await page.locator(`[data-own=${sheet}]`).click();
     const wanted = await value(page, (what) => [...document.querySelectorAll(what)]
       .filter((one) => !one.disabled && one.checkVisibility({ visibilityProperty: true })).map((one, i) => (one.dataset.walked = `${i}`)), shown);
     await value(page, () => document.activeElement.blur());
@@ -86,7 +91,7 @@ test("each control that is seen is reached by Tab, with a name and a ring around
       reached.add(at.walked);
     }
     assert.deepEqual([...reached].sort(), wanted.sort(), `sheet ${sheet}`);
-    if (sheet) { // and a sheet is left by the keyboard, without a stop of the session
+    if (sheet.length === 1) { // and a sheet is left by the keyboard, without a stop of the session
       await page.keyboard.press("Escape");
       await until(page, () => document.getElementById("sheet").hidden);
       assert.equal(await value(page, () => window.nanotouch.seen.now.state), 0);
@@ -96,7 +101,7 @@ test("each control that is seen is reached by Tab, with a name and a ring around
   await page.close();
 });
 
-test("on a phone view and force curve are whole, and the sliders are below them", async () => {
+test("on a phone view, first slider and force curve are whole on the first screen", async () => {
   const { page } = await visit(chromium.context, FILE);
   for (const size of [{ width: 390, height: 844 }, { width: 360, height: 640 }]) {
     await page.setViewportSize(size);
@@ -106,7 +111,7 @@ test("on a phone view and force curve are whole, and the sliders are below them"
       const { left, right, top, bottom } = (id === "facts" ? document.querySelector("footer") : document.getElementById(id)).getBoundingClientRect();
       return { left, right, top, bottom };
     }));
-    assert.ok(law.bottom <= footer.top && view.bottom <= law.top && sliders.top >= law.bottom, JSON.stringify({ law, view, footer, sliders }));
+    assert.ok(law.bottom <= footer.top && view.bottom <= sliders.top && sliders.bottom <= law.top, JSON.stringify({ law, view, footer, sliders }));
     assert.ok(footer.bottom <= size.height && [law, view, footer].every(({ left, right }) => left >= 0 && right <= size.width));
     assert.ok(law.bottom - law.top >= 140 && view.bottom - view.top >= 180, JSON.stringify({ law, view }));
   }
@@ -134,7 +139,7 @@ test("where less motion is asked for, nothing glides: the magnified contact is a
     const widths = new Set();
     for (let i = 0; i < 400 && !(await value(page, () => window.nanotouch.seen.now.force > 2e-8)); ++i) {
       await page.keyboard.press("PageDown");
-      widths.add(await value(page, () => window.nanotouch.contact.halfWidth));
+      widths.add(await value(page, () => window.nanotouch.lens.contact.halfWidth));
     }
     widths.delete(0);
     const least = Math.min(...widths);

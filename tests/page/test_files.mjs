@@ -189,7 +189,7 @@ test("a wrong file gets a plain word, and the touch goes on", async () => {
     ["units.csv", `z (furlong), force (N)\n${"1,2\n".repeat(50)}`, "units"], ["flat.csv", "1e-9,0\n".repeat(50), "flat.csv"],
     ["volts.csv", `z (V), force (V)\n${"1,2\n".repeat(50)}`, "length and a force"], ["swapped.csv", `z (nN), force (nm)\n${"1,2\n".repeat(50)}`, "length and a force"],
     ["rigid.csv", curve().replace("[N/m]: 5", "[N/m]: 0"), "spring constant = 0 N/m: valid is above 0"],
-    ["tower.gsf", gsf(8, 8, "m", Array(64).fill(0).fill(1, 0, 8)), "surface is .* high: valid is up to"],
+    ["tower.gsf", gsf(8, 8, "m", Array(64).fill(0).fill(1, 0, 8)), "height of the surface = 1 m: valid is"],
     ["deep.toml", `a = ${"[".repeat(5000)}`, "^deep.toml: Invalid TOML document: [^\\n]{0,90}$"],
     ["touch.mcap", "\x89MCAP0", "recording"], ["archive.zip", Buffer.from([80, 75, 3, 4, 0, 1, 2]), "archive.zip"],
   ];

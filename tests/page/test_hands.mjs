@@ -2,7 +2,7 @@
 // Gamepad, SpaceMouse, touch screen and sound in Chromium: the devices are played here, by what the browser would say.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { FILE, later, open, touched, until, value, visit } from "./browser.mjs";
+import { all, FILE, later, open, touched, until, value, visit } from "./browser.mjs";
 
 let chromium;
 before(async () => { chromium = await open({ offline: true, touch: true, width: 900, height: 640 }); });
@@ -170,6 +170,7 @@ test("sound: silent in the air, higher with the force, off again; each order end
   const { levels, pitches } = await value(page, () => window.ear);
   assert.ok(Math.max(...pitches) > 1.2 * Math.min(...pitches) && Math.max(...pitches) <= 4 * 220, `${Math.max(...pitches)}`);
   levels.forEach(([level], i) => { if (level > 0) assert.ok(levels[i + 1][0] === 0 && levels[i + 1][1] <= 0.1, `${levels[i + 1]}`); });
+  await all(page);
   await page.locator("[data-own=m]").click();
   await until(page, () => window.ear.closed === 1);
   await page.close();

@@ -2,7 +2,7 @@
 // The page in Chromium, opened from a file with the network off. Counters, ages and forces decide, never frame rates.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { FILE, open, touched, until, value, visit } from "./browser.mjs";
+import { all, FILE, open, touched, until, value, visit } from "./browser.mjs";
 
 let chromium;
 before(async () => { chromium = await open({ offline: true }); });
@@ -66,6 +66,7 @@ test("keys do what the mouse does, and every control is reached by Tab", async (
   await until(page, () => window.nanotouch.seen.now.state !== 0);
   await page.keyboard.press("Enter");
   await until(page, () => window.nanotouch.seen.now.state === 0);
+  await all(page);
   const names = new Set();
   for (let i = 0; i < 40; ++i) {
     await page.keyboard.press("Tab");
@@ -141,6 +142,7 @@ test("a scene in the fragment is touched; its link holds it", async () => {
   const { page } = await visit(chromium.context, `${FILE}#${new URLSearchParams({ scene })}`);
   await touched(page);
   assert.equal(await value(page, () => window.nanotouch.seen.world.scene.tip.radius), 35e-9);
+  await all(page);
   await page.locator("[data-own=e]").click();
   assert.match(await page.locator("#sheet textarea").inputValue(), /radius_m = 3.5e-8/);
   await page.close();
@@ -156,6 +158,7 @@ test("a sample by its card, a task to its end, a lesson's prediction", async () 
     if (!(await value(page, () => window.nanotouch.seen.now.contact > 0))) await page.keyboard.press("Shift+PageDown", { delay: 10 });
     else await page.waitForTimeout(50);
   assert.ok((await seen(page, "task")).passed, JSON.stringify(await seen(page, "task")));
+  await all(page);
   await page.locator("[data-own=t]").click();
   await page.locator("#sheet button", { hasText: "Lesson" }).click();
   await until(page, () => window.nanotouch.seen.task.name === "lesson-1" && window.nanotouch.seen.world?.title === "Mica in dry air");

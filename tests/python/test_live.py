@@ -296,9 +296,10 @@ def test_the_shadow_lies_on_the_surface() -> None:
     vtk = pytest.importorskip("vtkmodules.all")
     heights = np.outer(np.ones(40), np.linspace(0.0, 1e-7, 40))
     made = stage.Stage(vtk, vtk.vtkRenderer(), heights, np.array([1e-8, 1e-8]))
-    made._cast(np.array([0.5, 0.5, 0.0]), 1.0)
-    for _, data in made.shadows:
+    made.instrument._cast(np.array([0.5, 0.5, 0.0]), 0.0, made._on)
+    for _, data in made.instrument.below_tip + made.instrument.below_beam:
         for x, _, z in (data.GetPoint(point) for point in range(data.GetNumberOfPoints())):
+            assert 0.0 < x < 2.0 * made.centre[0]
             drawn = (x * made.unit / 1e-8 - 0.5) / 39 * 1e-7 * made.scale[2]
             assert z == pytest.approx(drawn + stage.LIFTED, abs=1e-6)
 
@@ -346,7 +347,8 @@ def test_a_large_file_is_told_of_until_it_is_laid(tmp_path: Path) -> None:
     seen.notes[-1] = (at - 20.0, *seen.notes[-1][1:])
     assert readings._lower(LIGHT, seen, "")[0] == ""  # that it is read is told no more
     host.answer({"do": "open", "path": str(image)})
-    assert readings._lower(LIGHT, seen, "")[0] == "Feel your own surface."
+    assert readings._lower(LIGHT, seen, "")[0] == ""
+    assert seen.world["hint"] == "Feel your own surface."
     host.close()
 
 

@@ -78,7 +78,7 @@ def test_a_refused_answer_goes_when_the_next_one_is_given() -> None:
 
 def test_a_click_on_the_number_of_a_slider_is_no_drag() -> None:
     sliders = Sliders()
-    sliders.frame = (0.0, 0.0, 800.0, 122.0)
+    sliders.frame, sliders.full = (0.0, 0.0, 800.0, 122.0), True
     sliders.sliders = [HUMIDITY, MODULUS]
     x, y, width, _ = sliders._box(1)
     assert sliders.value_at(x + 0.9 * width, y + 37) is MODULUS
@@ -128,22 +128,24 @@ def test_a_window_fits_its_screen() -> None:
 
 
 @pytest.mark.parametrize("size", [(1440, 900), (1384, 836), (1264, 736), (1008, 704), (784, 536)])
-def test_panels_lie_in_the_window_and_not_on_each_other(size: tuple[int, int]) -> None:
-    made = Layout(*size)
-    for frame in (made.top, made.status, made.controls, made.view, made.bars, made.cards, made.help):
+@pytest.mark.parametrize("full", [False, True])
+def test_panels_lie_in_the_window_and_not_on_each_other(size: tuple[int, int], full: bool) -> None:
+    made = Layout(*size, full)
+    for frame in (made.top, made.guide, made.status, made.controls, made.view, made.bars, made.cards, made.help):
         assert min(frame) >= 0.0
         assert frame[0] + frame[2] <= size[0]
         assert frame[1] + frame[3] <= size[1]
-    panels = [made.top, made.status, made.controls, made.view]
-    panels += [made.history, made.law, made.contact] if made.column else []
+    panels = [made.top, made.guide, made.status, made.controls, made.view]
+    if made.column:
+        panels += [made.history, made.law, made.contact] if full else [made.law]
     for number, one in enumerate(panels):
         for other in panels[:number]:
             apart = (one[0] + one[2] <= other[0] or other[0] + other[2] <= one[0]
                      or one[1] + one[3] <= other[1] or other[1] + other[3] <= one[1])  # fmt: skip
             assert apart, (one, other)
     sliders = Sliders()
-    sliders.frame, sliders.sliders = made.controls, 8 * [SCALE]
-    for number in range(8):
+    sliders.frame, sliders.sliders, sliders.full = made.controls, 8 * [SCALE], full
+    for number in range(len(sliders.shown)):
         x, y, width, _ = sliders._box(number)
         assert made.controls[0] <= x
         assert x + width <= made.controls[0] + made.controls[2]

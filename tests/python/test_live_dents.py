@@ -245,7 +245,7 @@ def test_each_preset_has_a_card_with_its_words() -> None:
 
 def test_each_task_of_the_menu_has_a_key() -> None:
     pytest.importorskip("vtkmodules")
-    from nanotouch_app.live.window import FUNCTION_KEYS  # it loads VTK
+    from nanotouch_app.live.keys import FUNCTION_KEYS
 
     assert len(FUNCTION_KEYS) >= len(board.MENU)
 

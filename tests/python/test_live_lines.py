@@ -47,6 +47,37 @@ def check(host: Host, world: dict[str, Any]) -> None:
         assert told * scale == pytest.approx(value, rel=6e-3), (field, shown)
 
 
+def guided(told: list[dict[str, Any]], host: Host) -> None:
+    """What to do next, while nothing touches, beside the plan."""
+    scene, words = host.session.scene, newest(told, "guide")["text"]
+    plan = scene.plan(relative_accuracy=host.about["relative_accuracy"])
+    holds = plan.pull_off_force > 1e-3 * scene.range.maximum_load
+    assert ("the water snaps" in words) == (holds and plan.explain()["adhesion_source"] == "meniscus"), words
+    assert holds or "snaps" not in words, words
+
+
+def test_a_hint_names_what_the_hand_is_moved_with_and_follows_what_happens() -> None:
+    told: list[dict[str, Any]] = []
+    host = Host(of_preset("silicon_in_air"), told.append, stepped=True)
+    for device, words in (("finger", "bar at the left"), ("keys", "Page Down"), ("pad", "right stick"),
+                          ("wheel", "Scroll down")):  # fmt: skip
+        host.answer({"do": "device", "name": device})
+        assert newest(told, "guide")["text"].endswith("until the water snaps.")
+        assert words in newest(told, "guide")["text"]
+    host.answer({"do": "device", "name": "spoon"})
+    assert "valid are wheel, finger, keys, pad" in newest(told, "refused")["why"]
+    host.answer({"do": "press", "on": True})
+    host.advance(1.0)
+    assert newest(told, "guide")["text"] == "Scroll up until it tears."
+    host.answer({"do": "press", "on": False})
+    host.advance(1.5)
+    assert newest(told, "guide")["text"] == host.about["hint"]
+    host.answer({"do": "task", "name": "find"})
+    host.advance(0.1)
+    assert newest(told, "guide")["text"] == ""  # the task has words of its own
+    host.close()
+
+
 @pytest.mark.parametrize("name", ["silicon_in_air", "mica_in_air", "silicone_rubber", "latex_on_glass"])
 def test_no_line_contradicts_a_number(name: str) -> None:
     """All samples: tests/heavy/lines.py."""
@@ -62,6 +93,7 @@ def moved(name: str) -> None:
     host.report()
     rows = newest(told, "sliders")["sliders"]
     check(host, newest(told, "world"))
+    guided(told, host)
     for place, row in enumerate(rows):
         value, words = row["stops"][(40, 150)[place % 2]]
         told.clear()
@@ -72,6 +104,7 @@ def moved(name: str) -> None:
         world = newest(told, "world")
         assert world["shown"][row["field"]] == words
         check(host, world)
+        guided(told, host)
         host.answer({"do": "undo"})
     host.close()
 

@@ -20,7 +20,7 @@ from nanotouch import curves
 from nanotouch.errors import Error
 from nanotouch_app import view
 from nanotouch_app.live import cards, files, film, parts, picture, readings, reel
-from nanotouch_app.live.contact import ContactPanel, _View
+from nanotouch_app.live.contact import Contact, View
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.look import LIGHT
 from nanotouch_app.live.remote import Remote
@@ -49,15 +49,16 @@ def test_a_film_is_made_without_a_display(tmp_path: Path, monkeypatch: pytest.Mo
         assert made.width == film.GIF_WIDTH
 
 
-def test_a_ball_that_ends_inside_the_picture_is_drawn() -> None:
+@pytest.mark.parametrize("round_", [False, True])
+def test_a_ball_that_ends_inside_the_picture_is_drawn(round_: bool) -> None:
     """Beyond its radius there is no tip: its height is infinite there, and no difference of it is taken."""
     scene, _ = nt.presets.cell_in_liquid()
     section = nt.view.section(scene.plan(), scene, 1e-6, 0.0, np.linspace(0.0, 2.0 * scene.tip.radius, 50))
     assert np.isinf(section.tip).any()
     lines: list[int] = []
     painter = SimpleNamespace(area=lambda *_: None, line=lambda points, *_, **__: lines.append(len(points)))
-    shown = _View((0.0, 0.0, 400.0, 400.0), 2.0 * scene.tip.radius)
-    ContactPanel._bodies(cast(Any, painter), LIGHT, shown, section)
+    shown = View((0.0, 0.0, 400.0, 400.0), 2.0 * scene.tip.radius, round_)
+    Contact._bodies(cast(Any, painter), LIGHT, shown, section)
     assert min(lines) >= 2
 
 

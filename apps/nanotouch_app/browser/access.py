@@ -103,7 +103,7 @@ ASKED: dict[str, dict[str, Callable[[object], bool]]] = {
     "retract": {}, "stop": {}, "arm": {}, "pause": {}, "step": {}, "slower": {}, "faster": {}, "rewind": {}, "undo": {},
     "redo": {},
     "preset": {"name": _preset}, "task": {"name": _task}, "choose": {"number": _number},
-    "say": {"text": _text},
+    "say": {"text": _text}, "device": {"name": _text},
     "change": {"what": _text, "field": lambda value: isinstance(value, str) and value in FIELDS, "value": _number},
 }  # fmt: skip
 

@@ -34,6 +34,16 @@ def quads(vtk: Any, rows: int, columns: int) -> Any:
     return cells
 
 
+def actor_of(vtk: Any, renderer: Any, data: Any) -> Any:
+    """What draws a mesh in a renderer."""
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    made = vtk.vtkActor()
+    made.SetMapper(mapper)
+    renderer.AddActor(made)
+    return made
+
+
 def pixels(vtk: Any, window: Any) -> Any:
     """What a window shows, rows from the top, as bytes (height, width, 3)."""
     grab = vtk.vtkWindowToImageFilter()

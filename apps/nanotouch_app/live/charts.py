@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from nanotouch_app.live.axes import Axes
-from nanotouch_app.live.look import SMALL, Colour, Palette, digits, step_up
+from nanotouch_app.live.look import SMALL, Palette, digits, step_up
 from nanotouch_app.live.painter import Painter
 from nanotouch_app.live.seen import HISTORY, Seen
 
@@ -66,15 +66,16 @@ class ForceGap:
         x, y = frame[0] + frame[2] - 14, frame[1] + frame[3] - 16
         words = f"pull-off {digits(pull, 'N')}" if pull > 1e-3 * seen.load else "nothing pulls"
         painter.text(x, y, words, palette.ink, SMALL, "right")
-        for place, (name, colour) in enumerate((("way in", palette.accent), ("way out", palette.ink))):
-            painter.text(frame[0] + 58 + 70 * place, frame[1] + 14, name, colour, SMALL)
+        left = frame[0] + 58
+        for name, colour in (("approach", palette.accent), ("retraction", palette.ink)):
+            painter.text(left, frame[1] + 14, name, colour, SMALL)
+            left += painter.width_of(name, SMALL) + 12
 
     @staticmethod
     def _law(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:
-        way_in: Colour = palette.accent
         painter.line(_mapped(axes, seen.curve.unstable), palette.quiet, 1.5, dashed=True)
         painter.line(_mapped(axes, seen.curve.attached), palette.ink, 2.0)
-        painter.line(_mapped(axes, seen.curve.apart), way_in, 2.0)
+        painter.line(_mapped(axes, seen.curve.apart), palette.accent, 2.0)
 
     @staticmethod
     def _lever(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:

@@ -3,8 +3,12 @@
 
 from __future__ import annotations
 
+import configparser
 import math
+import os
+from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 
 from nanotouch_app.common.quantity import digits as digits
 
@@ -71,6 +75,18 @@ def fitting(screen_width: int, screen_height: int) -> tuple[int, int]:
     width = WIDTH if screen_width >= WIDTH else screen_width - EDGES[0]
     height = HEIGHT if screen_height >= HEIGHT else screen_height - EDGES[1]
     return max(width, LEAST[0]), max(height, LEAST[1])
+
+
+def is_still() -> bool:
+    """Whether the desktop asks for reduced motion: GTK's settings, which GNOME, KDE and Xfce write."""
+    home = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
+    for name in ("gtk-4.0", "gtk-3.0"):
+        settings = configparser.ConfigParser(interpolation=None, strict=False)
+        with suppress(OSError, configparser.Error, UnicodeDecodeError):
+            settings.read(home / name / "settings.ini", encoding="utf-8")
+        if settings.get("Settings", "gtk-enable-animations", fallback="true").lower() in ("false", "0"):
+            return True
+    return False
 
 
 def unit(colour: Colour) -> tuple[float, float, float]:

@@ -54,11 +54,17 @@ class Painter:
         self.context.GetBrush().SetColor(*fill, 255)
         self.context.DrawEllipse(x, y, radius, radius)
 
-    def ring(self, x: float, y: float, radius: float, colour: Colour, width: float = 2.0) -> None:
+    def ring(self, x: float, y: float, radius: float, colour: Colour, width: float = 2.0, opacity: int = 255) -> None:
         """A circle."""
-        self._pen(colour, width)
+        self._pen(colour, width, opacity=opacity)
         self.context.GetBrush().SetColor(0, 0, 0, 0)
         self.context.DrawEllipse(x, y, radius, radius)
+
+    def scale(self, left: float, right: float, y: float, colour: Colour) -> None:
+        """A length between two ticks."""
+        self.line([[left, y], [right, y]], colour, 2.0)
+        for end in (left, right):
+            self.line([[end, y - 4.0], [end, y + 4.0]], colour, 2.0)
 
     def text(self, x: float, y: float, words: str, colour: Colour, size: int = TEXT, align: str = "left",
              bold: bool = False) -> None:  # fmt: skip
@@ -100,13 +106,13 @@ class Painter:
             kept = kept[:-1]
         return f"{kept.rstrip()} ..." if kept else ""
 
-    def _pen(self, colour: Colour | None, width: float, dashed: bool = False) -> None:
+    def _pen(self, colour: Colour | None, width: float, dashed: bool = False, opacity: int = 255) -> None:
         pen = self.context.GetPen()
         pen.SetColorF(0.0, 0.0, 0.0)
         if colour is None:
             pen.SetLineType(self.vtk.vtkPen.NO_PEN)
             return
-        pen.SetColor(*colour, 255)
+        pen.SetColor(*colour, opacity)
         pen.SetWidth(width)
         pen.SetLineType(self.vtk.vtkPen.DASH_LINE if dashed else self.vtk.vtkPen.SOLID_LINE)
 

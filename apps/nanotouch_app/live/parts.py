@@ -16,7 +16,7 @@ PARTS = {
     "vtkIOImage": "vtkPNGWriter",
     "vtkPythonContext2D": "vtkPythonItem",
     "vtkRenderingContext2D": "vtkContextActor vtkPen",
-    "vtkRenderingCore": "vtkActor vtkColorTransferFunction vtkPolyDataMapper vtkRenderWindow "
+    "vtkRenderingCore": "vtkActor vtkColorTransferFunction vtkLight vtkPolyDataMapper vtkRenderWindow "
                         "vtkRenderWindowInteractor vtkRenderer vtkWindowToImageFilter",
     "vtkInteractionStyle": "vtkInteractorStyleUser",
 }  # fmt: skip

@@ -11,7 +11,8 @@ from nanotouch_app.live import board, cards, readings
 from nanotouch_app.live.charts import ForceGap, History
 from nanotouch_app.live.contact import ContactPanel
 from nanotouch_app.live.entry import Entry
-from nanotouch_app.live.look import DARK, LIGHT, PROPERTY_NAMES, SMALL, Palette, digits, step_up, unit
+from nanotouch_app.live.lens import Lens
+from nanotouch_app.live.look import DARK, LIGHT, PROPERTY_NAMES, SMALL, Palette, digits, is_still, step_up, unit
 from nanotouch_app.live.painter import Painter
 from nanotouch_app.live.reel import Reel
 from nanotouch_app.live.seen import Seen
@@ -19,7 +20,8 @@ from nanotouch_app.live.sliders import Sliders, height_of
 from nanotouch_app.live.stage import Stage
 
 Frame = tuple[float, float, float, float]
-EDGE, TOP, STATUS = 12.0, 40.0, 56.0  # [pixels]
+EDGE, TOP, STATUS, GUIDE = 12.0, 40.0, 56.0, 32.0  # [pixels]
+COLUMN = {False: 0.34, True: 0.385}  # of the width: the right column with one chart, with all
 NARROW = 900.0  # below this width the right column goes away
 BAND = 0.15  # of the picture's height: the band under the largest planned force
 ROOMY = 760.0, 520.0  # for the cards [pixels]
@@ -28,18 +30,19 @@ BAR, COLOURS = 80.0, 120.0  # least length of the scale bar; of the bar of colou
 
 
 class Layout:
-    """The panels of a window of a size."""
+    """The panels of a window of a size: one slider and one chart, or all of them."""
 
-    def __init__(self, width: float, height: float) -> None:
-        self.width, self.height = width, height
-        column = 0.0 if width < NARROW else round(0.385 * width)
+    def __init__(self, width: float, height: float, full: bool = False) -> None:
+        self.width, self.height, self.full = width, height, full
+        column = 0.0 if width < NARROW else round(COLUMN[full] * width)
         left = width - 2 * EDGE - (column + EDGE if column else 0.0)
         self.top: Frame = (EDGE, height - TOP, width - 2 * EDGE, TOP)
         self.status: Frame = (EDGE, EDGE, width - 2 * EDGE, STATUS)
-        controls = height_of(left)
+        controls = height_of(left, full)
         self.controls: Frame = (EDGE, 2 * EDGE + STATUS, left, controls)
         floor = 3 * EDGE + STATUS + controls
-        self.view: Frame = (EDGE, floor, left, height - TOP - floor)
+        self.guide: Frame = (EDGE, height - TOP - GUIDE, left, GUIDE)
+        self.view: Frame = (EDGE, floor, left, height - TOP - GUIDE - floor)
         self.bars: Frame = (EDGE + left - 232, floor + 12, 220, 124)
         self.cards: Frame = (EDGE + 12, floor + 8, left - 24, height - TOP - floor - 16)
         if min(self.cards[2] / ROOMY[0], self.cards[3] / ROOMY[1]) < 1.0:  # over all but the status
@@ -51,7 +54,9 @@ class Layout:
         heights = [share * (room - 2 * EDGE) for share in shares]
         x = width - EDGE - column
         self.history: Frame = (x, base, column, heights[2])
-        self.law: Frame = (x, base + heights[2] + EDGE, column, heights[1])
+        self.law: Frame = (
+            (x, base + heights[2] + EDGE, column, heights[1]) if full else (x, base, column, height - TOP - base)
+        )
         self.contact: Frame = (x, base + heights[2] + heights[1] + 2 * EDGE, column, heights[0])
         self.column = column > 0.0
 
@@ -62,8 +67,7 @@ class Picture:
     def __init__(self, vtk: Any, window: Any, heights: Any, pixel_size: Any) -> None:
         self.vtk, self.window, self.seen = vtk, window, Seen()
         self.palette: Palette = LIGHT
-        self.help = False
-        self.menu = False
+        self.help = self.menu = self.full = False
         self.entry: Entry | None = None
         self.reel: Reel | None = None
         self.drawings = 0
@@ -75,7 +79,7 @@ class Picture:
             window.AddRenderer(renderer)
         self.cards = False
         self.lay(heights, pixel_size)
-        self.contact, self.law, self.history = ContactPanel(), ForceGap(), History()
+        self._begin()
         self._paint_on(self.back, self.background)
         self._paint_on(self.front, self.foreground)
         self.dress(LIGHT)
@@ -86,6 +90,11 @@ class Picture:
         self.heights, self.pixel_size = np.asarray(heights, dtype=float), np.asarray(pixel_size, dtype=float)
         self.stage = Stage(self.vtk, self.scene, self.heights, self.pixel_size)
         self.sliders = Sliders()
+        self.sliders.full = self.full
+
+    def _begin(self) -> None:
+        """Charts of another sample."""
+        self.contact, self.law, self.history, self.lens = ContactPanel(), ForceGap(), History(), Lens(is_still())
 
     def _paint_on(self, renderer: Any, paint: Any) -> None:
         item = self.vtk.vtkPythonItem()
@@ -111,7 +120,7 @@ class Picture:
             with np.load(message["path"]) as stored:
                 self.lay(stored["heights"], stored["pixel_size"])
                 self.stage.give({name: stored[name] for name in stored.files if name in PROPERTY_NAMES})
-            self.contact, self.law, self.history = ContactPanel(), ForceGap(), History()
+            self._begin()
             self.dress(self.palette)
         if message["tell"] == "dents" and self.seen.dented is not None:
             dented = self.seen.dented
@@ -129,8 +138,9 @@ class Picture:
     def render(self) -> None:
         """Draw what is seen now."""
         size = self.window.GetSize()
-        if (self.layout.width, self.layout.height) != tuple(size):
-            self.layout = Layout(*size)
+        if (self.layout.width, self.layout.height, self.layout.full) != (*size, self.full):
+            self.layout = Layout(size[0], size[1], self.full)
+            self.sliders.full = self.full
         x, y, width, height = self.layout.view
         self.scene.SetViewport(x / size[0], y / size[1], (x + width) / size[0], (y + height) / size[1])
         self.sliders.frame = self.layout.controls
@@ -146,24 +156,28 @@ class Picture:
     def background(self, painter: Painter) -> None:
         """Behind the scene: the panels."""
         seen, palette, layout = self.seen, self.palette, self.layout
-        readings.top(painter, palette, layout.top, seen)
+        readings.top(painter, palette, layout.top, seen, self.full)
+        readings.guide(painter, palette, layout.guide, seen)
         if self.reel is None and "sliders" in seen.hides:
             self._hidden(painter, layout.controls, "the sliders: hidden during this task")
         elif self.reel is None:
             self.sliders.draw(painter, palette, seen)
         else:
             self._time_line(painter, self.reel)
-        readings.status(painter, palette, layout.status, seen, self._about())
+        readings.status(painter, palette, layout.status, seen, self._about(), self.full)
         if layout.column:
-            for name, words, panel, frame in (("contact", "the section", self.contact, layout.contact),
-                                              ("law", "the law", self.law, layout.law)):  # fmt: skip
+            panels: list[tuple[str, str, ContactPanel | ForceGap, Frame]] = [("law", "the law", self.law, layout.law)]
+            if self.full:
+                panels.append(("contact", "the section", self.contact, layout.contact))
+            for name, words, panel, frame in panels:
                 if name in seen.hides:
                     self._hidden(painter, frame, f"{words}: hidden during this task")
                 elif name == "contact" and seen.is_blind:
                     self._hidden(painter, frame, f"{words}: not known of a real slave, which measures a force alone")
                 else:
                     panel.draw(painter, palette, frame, seen)
-            self.history.draw(painter, palette, layout.history, seen)
+            if self.full:
+                self.history.draw(painter, palette, layout.history, seen)
 
     def _hidden(self, painter: Painter, frame: Frame, words: str) -> None:
         x, y, width, height = frame
@@ -204,8 +218,11 @@ class Picture:
         if self.seen.frame is not None and self.seen.world:
             self._proxy(painter)
             self._scales(painter)
-        readings.bars(painter, self.palette, self.layout.bars, self.seen)
-        readings.event(painter, self.palette, self.layout.view, self.seen)
+            if not {"contact", "surface"} & set(self.seen.hides) and not self.seen.is_blind:
+                tip = self.stage.pixel(self.stage.apex(self.seen))
+                self.lens.draw(painter, self.palette, self.layout.view, tip, self.seen)
+        if self.full:
+            readings.bars(painter, self.palette, self.layout.bars, self.seen)
         if self.board:
             typed = self.entry.shown if self.entry is not None and self.entry.slider is None else ""
             board.draw(painter, self.palette, self.board, self.corner, typed)

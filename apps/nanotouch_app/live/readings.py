@@ -18,6 +18,7 @@ Frame = tuple[float, float, float, float]
 NOTED = 9.0  # a note stays for so long [s]
 LONGEST = 300.0  # one of what is being done till the next [s]
 AGE, HELP_HEAD, HELP_LINE = 190.0, 70.0, 25.0  # for the age of a frame; of the help [pixels]
+LARGE = 20  # letters of what to do next [pixels]
 TIP_STEP = 3.0  # forces at the tip are told apart from so many RMS noises of the lever on
 HAND_STEPS = (0.06, 0.01)  # just noticeable difference of a force at the hand: this share, at least this [N]
 HELP = (
@@ -32,6 +33,7 @@ HELP = (
     ("backspace", "rewind by 5 s"),
     ("Z, shift Z", "undo, redo a change"),
     ("1 .. 5, 0", "views; drag with the middle button turns"),
+    ("D", "more: all sliders, charts and facts; less"),
     ("C, T", "other samples; tasks and the lesson"),
     ("F1 .. F7, N", "the choices of a task; type its number"),
     ("click on a number", "type it with its unit"),
@@ -44,12 +46,19 @@ HELP = (
 )
 
 
-def top(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
+def guide(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
+    """What to do next, in a sentence."""
+    words = seen.world.get("hint", "") if seen.guide is None else seen.guide
+    painter.text(frame[0] + 4, frame[1] + 0.5 * frame[3], painter.fitted(str(words), frame[2] - 8, LARGE), palette.ink,
+                 LARGE, bold=True)  # fmt: skip
+
+
+def top(painter: Painter, palette: Palette, frame: Frame, seen: Seen, full: bool) -> None:
     """Title at the left; clock and history at the right."""
     x, y, width, height = frame
     middle = y + 0.5 * height
     clock = seen.clock
-    parts = [f"{clock['speed']:g}x"]
+    parts = [f"{clock['speed']:g}x"] if full or clock["speed"] != 1.0 else []
     if clock["slowdown"] > 1.05 and not clock["paused"]:
         parts.append(f"machine slow: {clock['slowdown']:.1f} times")
     if clock["paused"]:
@@ -58,13 +67,14 @@ def top(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
         parts.insert(0, f"rec {int(seen.frame['time']) // 60:02d}:{int(seen.frame['time']) % 60:02d}")
     if seen.world.get("undo"):
         parts.append(f"Z: undo ({seen.world['undo']})")
-    parts.append("H: help" if "source" in seen.world else "C: samples   T: tasks   H: help")
+    parts.append("H: help" if "source" in seen.world else f"C: samples   {'T: tasks   ' * full}H: help")
+    parts.append("D: less" if full else "D: more")
     clocks, title = "   ".join(parts), str(seen.world.get("title", ""))
     painter.text(x + width - 4, middle, clocks, palette.ink, align="right")
     room = width - painter.width_of(clocks) - 24
     painter.text(x + 4, middle, painter.fitted(title, room, TITLE), palette.ink, TITLE, bold=True)
     start = 28 + painter.width_of(title, TITLE, bold=True)
-    words = [seen.world.get("source", "simulated, wall pace"), seen.world.get("felt", "")]
+    words = [seen.world.get("source", "simulated, wall pace"), seen.world.get("felt", "")] if full else []
     told = painter.fitted("  ·  ".join(filter(None, words)), room - start, SMALL)
     painter.text(x + start, middle, told, palette.quiet, SMALL)
 
@@ -104,7 +114,7 @@ def _squeezed(share: float) -> float:
     return math.copysign(math.sqrt(min(abs(share), 1.0)), share)
 
 
-def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen, about: str = "") -> None:
+def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen, about: str, full: bool) -> None:
     """State and why; what touches; how accurate, how far from the limit, what is guaranteed."""
     x, y, width, height = frame
     painter.box(frame, palette.panel, palette.line)
@@ -124,12 +134,13 @@ def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen, about: 
         painter.text(x + 110, upper, _stopped(state, int(seen.frame["reasons"])), colour)
     elif first:
         painter.text(x + 110, upper, first, tint, SMALL)
-    else:
+    elif full:
         painter.text(x + 110, upper, painter.fitted(_facts(seen), width - 122), palette.ink)
     lower = y + 16
     skipped = f", {seen.missed} ticks not drawn" if seen.missed else ""
     age = f"frame {1e3 * min(seen.age, 9.999):.0f} ms old{skipped}"
-    painter.text(x + width - 12, lower, age, palette.quiet, SMALL, "right")
+    if full:
+        painter.text(x + width - 12, lower, age, palette.quiet, SMALL, "right")
     left = rest if first and not (seen.stale or state) else words
     painter.text(x + 32, lower, painter.fitted(left, room, SMALL), tint, SMALL)
 
@@ -144,7 +155,7 @@ def _split(painter: Painter, words: str, upper: float, lower: float) -> tuple[st
 
 
 def _lower(palette: Palette, seen: Seen, about: str) -> tuple[str, Colour]:
-    """The second line: what a slider does, what was told last, or what to try."""
+    """The second line: what a slider does, or what was told last."""
     if about:
         return about, palette.accent
     if seen.notes:
@@ -154,7 +165,7 @@ def _lower(palette: Palette, seen: Seen, about: str) -> tuple[str, Colour]:
             return f"{words} {age:.0f} s", palette.hold
         if age < NOTED:
             return words, palette.bad if is_bad else palette.hold
-    return str(seen.world.get("hint", "")), palette.quiet
+    return "", palette.quiet
 
 
 def known(value: float | None) -> float:
@@ -184,18 +195,3 @@ def help_panel(painter: Painter, palette: Palette, frame: Frame) -> None:
         level = y + height - 62 - pitch * number
         painter.text(x + 24, level, key, palette.accent)
         painter.text(x + 210, level, does, palette.ink)
-
-
-SHOWN, LARGE = 2.5, 34  # an event is shown so long [s]; its letters [pixels]
-
-
-def event(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
-    """What has just snapped or torn, as one large number over the scene."""
-    at, words = seen.event
-    age = time.monotonic() - at
-    if not words or age > SHOWN:
-        return
-    x, y, width, height = frame
-    room, middle, level = painter.width_of(words, LARGE, bold=True) + 32, x + 0.5 * width, y + 0.9 * height
-    painter.box((middle - 0.5 * room, level - 0.75 * LARGE, room, 1.5 * LARGE), palette.panel, palette.line)
-    painter.text(middle, level, words, palette.accent, LARGE, "centre", bold=True)

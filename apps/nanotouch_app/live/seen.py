@@ -69,7 +69,8 @@ class Seen:
         self.peak = 0.0
         self.snaps: deque[tuple[float, str]] = deque(maxlen=8)
         self.missed = 0
-        self.event = (0.0, "")  # when, and how hard
+        self.event = (0.0, "", "")  # when, how hard, what
+        self.guide: str | None = None  # what to do next; None: the session does not say
 
     def hear(self, message: dict[str, Any]) -> None:
         """Take what the host tells."""
@@ -90,7 +91,9 @@ class Seen:
             case "particles":
                 self.snaps += [(self.arrived, event) for event in message["events"]]
             case "event":
-                self.event = (time.monotonic(), str(message["text"]))
+                self.event = (time.monotonic(), str(message["text"]), str(message["kind"]))
+            case "guide":
+                self.guide = str(message["text"])
             case "task":
                 self.task = message if message["name"] else {}
             case "refused":

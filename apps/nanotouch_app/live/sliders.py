@@ -49,9 +49,9 @@ def columns_of(width: float) -> int:
     return COLUMNS[width >= WIDE]
 
 
-def height_of(width: float) -> float:
-    """Of the panel of all [pixels]."""
-    return 2.0 * HEAD + ROW * -(-MOST // columns_of(width)) + 2.0
+def height_of(width: float, full: bool) -> float:
+    """Of the panel of all, or of the first one [pixels]."""
+    return 2.0 * HEAD + ROW * (-(-MOST // columns_of(width)) if full else 1) + 2.0
 
 
 class Sliders:
@@ -63,6 +63,12 @@ class Sliders:
         self.wish = 0.0
         self.hovered: Slider | None = None
         self.frame: Frame = (0.0, 0.0, 1.0, 1.0)
+        self.full = False  # all of them, or the first one alone
+
+    @property
+    def shown(self) -> list[Slider]:
+        """Those that are drawn."""
+        return self.sliders if self.full else self.sliders[:1]
 
     def take(self, world: dict[str, Any]) -> None:
         """The values as they are now; the ends stay where they were."""
@@ -73,13 +79,14 @@ class Sliders:
 
     def _box(self, number: int) -> Frame:
         x, y, width, height = self.frame
-        row, column = divmod(number, columns_of(width))
-        across = width / columns_of(width)
+        columns = columns_of(width) if self.full else 1
+        row, column = divmod(number, columns)
+        across = width / columns
         return x + column * across + 0.5 * INSET, y + height - HEAD - (row + 1) * ROW, across - INSET, ROW
 
     def at(self, x: float, y: float) -> Slider | None:
         """The slider under a place of the window."""
-        for number, slider in enumerate(self.sliders):
+        for number, slider in enumerate(self.shown):
             left, bottom, width, height = self._box(number)
             if left - 8 <= x <= left + width + 8 and bottom <= y <= bottom + height:
                 return slider
@@ -109,7 +116,7 @@ class Sliders:
     def draw(self, painter: Painter, palette: Palette, seen: Seen) -> None:
         """Into the frame."""
         painter.box(self.frame, palette.panel, palette.line)
-        for number, slider in enumerate(self.sliders):
+        for number, slider in enumerate(self.shown):
             left, bottom, width, _ = self._box(number)
             held = slider is self.held
             value = self.wish if held else slider.value

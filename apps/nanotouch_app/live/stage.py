@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nanotouch_app.live.arrays import points, quads, to_vtk
+from nanotouch_app.live.arrays import actor_of, points, quads, to_vtk
 from nanotouch_app.live.balls import Balls
+from nanotouch_app.live.instrument import Instrument
 from nanotouch_app.live.look import LIGHT, PROPERTY_COLOURS, Colour, Palette, unit
 from nanotouch_app.live.relief import RELIEF, coarse, exaggeration, step_below, stepped
 from nanotouch_app.live.seen import TRACE, Seen
@@ -19,14 +20,9 @@ from nanotouch_app.live.tiles import MOST_FINE, Tiles
 
 Floats = NDArray[np.float64]
 
-TIP_HEIGHT = 0.34  # of the drawn tip [scene units]
-LEVER = (0.55, 0.13)  # length and width of the drawn lever [scene units]
-LEVER_POINTS = 24
-BALL = 300e-9  # a blunter tip is a ball that is glued to a stem [m]
+FLOOR = 0.05  # of the block whose top the surface is, below its lowest point [scene units]
+LIGHTS = (((-1.3, -0.9, 2.1), 0.85), ((1.2, 1.6, 1.2), 0.3))  # from where to the middle, how strong
 FAR = 0.14  # no tip is drawn higher above the surface than this [scene units]
-BEND = 0.05  # of the lever under the largest load [scene units]
-SHADOW = 0.05  # radius of the soft shadow [scene units]
-SHADOW_RINGS, SHADOW_ROUND = 6, 33  # of points that lie on the surface
 LIFTED = 0.004  # what is laid on the surface is drawn so much above it [scene units]
 RAISED = 0.1  # of what the camera looks at, over the middle of the surface [scene units]
 VIEWS = {"0": (0.0, 32.0, 1.86), "1": (0.0, 32.0, 1.86), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.86),
@@ -45,17 +41,23 @@ class Stage:
         self.coarse: dict[tuple[int, int], Any] = {}
         self.fine: dict[tuple[int, int], Any] = {}
         self._spread(heights)
-        self.tip: Any = None
-        self.lever: Any = None
-        self.ribbon: Any = None
         self.palette = LIGHT
-        self.shape: tuple[Any, ...] = ()
-        self.shades: list[Any] = []
-        self.shadows = [self._shadow(share) for share in (1.0, 0.7, 0.4)]
+        self.instrument = Instrument(vtk, renderer, self.unit)
         self.trace, self.trace_data = self._line()
         self.origin = np.zeros(2)  # of the surface in the frame of the tip [m]
         self.balls = Balls(vtk, renderer, self.unit, -self.lowest * float(self.scale[2]))
+        self._light()
         self.camera("0")
+
+    def _light(self) -> None:
+        self.renderer.RemoveAllLights()
+        for place, strength in LIGHTS:
+            light = self.vtk.vtkLight()
+            light.SetLightTypeToSceneLight()
+            light.SetPosition(*np.add(place, (0.5, 0.5, 0.0)))
+            light.SetFocalPoint(0.5, 0.5, 0.0)
+            light.SetIntensity(strength)
+            self.renderer.AddLight(light)
 
     # --- made once, and anew where the surface has changed ---
 
@@ -78,17 +80,34 @@ class Stage:
         self.coarse = {tile: self._tile(mesh) for tile, mesh in self.tiles.coarse.data.items()}
         self.fine = {tile: self._tile(mesh) for tile, mesh in self.tiles.fine.data.items()}
         self.near: set[tuple[int, int]] | None = None  # what is shown fine; None: nothing is drawn yet
+        self.walls = self._walls()
+
+    def _walls(self) -> Any:
+        """Of the block whose top the surface is, down to a floor."""
+        rows, columns = self.heights.shape
+        across, along = np.arange(columns), np.arange(rows)
+        i = np.concatenate([across, np.full(rows - 1, columns - 1), across[-2::-1], np.zeros(rows - 1, dtype=int)])
+        j = np.concatenate([np.zeros(columns, dtype=int), along[1:], np.full(columns - 1, rows - 1), along[-2::-1]])
+        top = (self.heights[j, i] - self.lowest) * float(self.scale[2])
+        rim = np.stack([(i + 0.5) * self.dx, (j + 0.5) * self.dy, top], axis=1)
+        floor = rim * [1.0, 1.0, 0.0] - [0.0, 0.0, FLOOR]
+        data = self.vtk.vtkPolyData()
+        data.SetPoints(points(self.vtk, np.stack([rim, floor])))
+        data.SetPolys(quads(self.vtk, 2, len(rim)))
+        actor = actor_of(self.vtk, self.renderer, data)
+        actor.GetProperty().SetAmbient(0.28)
+        return actor
 
     def reshape(self, heights: Floats, relief: float) -> None:
         """The tip has changed the surface, or may change it by a relief [m]."""
-        for actor in self.surface:
+        for actor in self.block:
             self.renderer.RemoveActor(actor)
         self._spread(heights, relief)
         self.paint(self.palette)
         self._show(set())
 
     def _tile(self, mesh: Any) -> Any:
-        actor = self._actor(mesh)
+        actor = actor_of(self.vtk, self.renderer, mesh)
         actor.GetMapper().SetLookupTable(self.colours)
         actor.GetMapper().InterpolateScalarsBeforeMappingOn()
         actor.GetProperty().SetAmbient(0.28)
@@ -101,39 +120,14 @@ class Stage:
         """The actors of all tiles."""
         return [*self.coarse.values(), *self.fine.values()]
 
-    def _actor(self, data: Any) -> Any:
-        mapper = self.vtk.vtkPolyDataMapper()
-        mapper.SetInputData(data)
-        actor = self.vtk.vtkActor()
-        actor.SetMapper(mapper)
-        self.renderer.AddActor(actor)
-        return actor
-
-    def _shadow(self, share: float) -> Any:
-        data = self.vtk.vtkPolyData()
-        data.SetPolys(quads(self.vtk, SHADOW_RINGS, SHADOW_ROUND))
-        actor = self._actor(data)
-        actor.GetProperty().SetColor(0.0, 0.0, 0.0)
-        actor.GetProperty().SetOpacity(0.16)
-        actor.GetProperty().LightingOff()
-        self.shades.append(actor)
-        return share, data
-
-    def _cast(self, middle: Floats, size: float) -> None:
-        """Lay the shadow around a place on the surface, as it rises and falls there."""
-        turn = np.linspace(0.0, 2.0 * math.pi, SHADOW_ROUND)
-        for share, data in self.shadows:
-            r = np.linspace(0.0, SHADOW * share * size, SHADOW_RINGS)
-            x, y = middle[0] + np.outer(r, np.cos(turn)), middle[1] + np.outer(r, np.sin(turn))
-            rim = self.centre * 2.0
-            x, y = np.clip(x, 0.0, rim[0]), np.clip(y, 0.0, rim[1])
-            z = self.tiles.cover(*self._pixels(x * self.unit, y * self.unit)) * self.scale[2] + LIFTED
-            data.SetPoints(points(self.vtk, np.stack([x, y, z], axis=-1)))
-            data.Modified()
+    @property
+    def block(self) -> list[Any]:
+        """The surface with its walls."""
+        return [*self.surface, self.walls]
 
     def _line(self) -> tuple[Any, Any]:
         data = self.vtk.vtkPolyData()
-        actor = self._actor(data)
+        actor = actor_of(self.vtk, self.renderer, data)
         actor.GetProperty().SetLineWidth(4.0)
         actor.GetProperty().LightingOff()
         return actor, data
@@ -149,16 +143,15 @@ class Stage:
         for actor in self.surface:
             actor.GetMapper().SetScalarRange(low, high)
         self.renderer.SetBackground(*unit(palette.panel))
-        for actor in (self.tip, self.lever):
-            if actor is not None:
-                actor.GetProperty().SetColor(*unit(palette.tip))
+        self.instrument.paint(palette)
+        self.walls.GetProperty().SetColor(*unit(palette.heights[1]))
 
     def lights(self, on: bool) -> None:
         """Whether surface, shadow and trace are seen."""
         if self.dark is not on:
             return
         self.dark = not on
-        for actor in (self.trace, *self.shades):
+        for actor in (self.trace, self.walls, *self.instrument.shades):
             actor.SetVisibility(on)
         self._show(self.near or set())
 
@@ -198,46 +191,13 @@ class Stage:
         """Draw heights one step higher or lower; the surface that was sent is stretched, not sent again."""
         self.factor = stepped(self.factor, up, float(np.ptp(self.heights)) / self.unit)
         self.scale[2] = self.factor / self.unit
-        for actor in self.surface:
+        for actor in self.block:
             actor.SetScale(1.0, 1.0, self.factor / self.built)
 
-    # --- the instrument: made anew when another tip is mounted ---
-
     def mount(self, radius: float, half_angle: float, kind: str) -> None:
-        """A tip of this radius [m] and half angle [rad] in its own proportions."""
-        if self.shape == (radius, half_angle, kind):
-            return
-        self.shape = (radius, half_angle, kind)
-        for actor in (self.tip, self.lever):
-            if actor is not None:
-                self.renderer.RemoveActor(actor)
-        self.tip = self._actor(self._turned(radius / self.unit, half_angle, kind))
-        self.tip.GetProperty().SetSpecular(0.35)
-        self.tip.GetProperty().SetSpecularPower(25.0)
-        self.ribbon = self.vtk.vtkPolyData()
-        self.lever = self._actor(self.ribbon)
-        self.lever.GetProperty().SetSpecular(0.2)
-        self.ribbon.SetPolys(quads(self.vtk, 2, LEVER_POINTS))
-        self.paint(self.palette)
-
-    def _turned(self, radius: float, half_angle: float, kind: str) -> Any:
-        """Sphere that goes over into a cone, or a ball on a stem."""
-        ball = kind == "sphere" or radius * self.unit > BALL
-        last = 0.9 * math.pi if ball else math.pi / 2 - half_angle
-        angle = np.linspace(0.0, last, 28)
-        r, h = radius * np.sin(angle), radius * (1.0 - np.cos(angle))
-        widening = math.tan(half_angle) if last < math.pi / 2 else 0.0
-        if h[-1] < TIP_HEIGHT:
-            r, h = np.append(r, r[-1] + (TIP_HEIGHT - h[-1]) * widening), np.append(h, TIP_HEIGHT)
-        turn = np.linspace(0.0, 2.0 * math.pi, 41)
-        rings = np.stack([np.outer(r, np.cos(turn)), np.outer(r, np.sin(turn)), np.outer(h, np.ones_like(turn))], -1)
-        data = self.vtk.vtkPolyData()
-        data.SetPoints(points(self.vtk, rings))
-        data.SetPolys(quads(self.vtk, *rings.shape[:2]))
-        normals = self.vtk.vtkPolyDataNormals()
-        normals.SetInputData(data)
-        normals.Update()
-        return normals.GetOutput()
+        """A tip of this radius [m] and half angle [rad]."""
+        self.instrument.mount(radius, half_angle, kind)
+        self.instrument.paint(self.palette)
 
     # --- what moves ---
 
@@ -271,23 +231,18 @@ class Stage:
         elif (near := self.tiles.near(*self._pixels(*self._place(seen)))) != self.near:
             self._show(near)
         apex = self.apex(seen)
-        self.tip.SetPosition(*apex)
-        self._bend(apex, seen)
         ground = (self._ground(*self._place(seen)) - self.lowest) * self.scale[2]
-        above = float(apex[2] - ground)
-        self._cast(apex + [0.6 * above, -0.3 * above, 0.0], 1.0 + 3.0 * max(above, 0.0))  # noqa: RUF005  an array
+        share = seen.force / seen.load if seen.load > 0.0 else 0.0
+        self.instrument.move(apex, max(float(apex[2] - ground), 0.0), share, self._on)
         self._draw_trace(seen)
 
-    def _bend(self, apex: Floats, seen: Seen) -> None:
-        """A beam that is clamped behind: w = zeta (3 s^2 - s^3)/2."""
-        length, width = LEVER
-        bend = BEND * max(-1.5, min(1.5, seen.force / seen.load)) if seen.load > 0.0 else 0.0
-        s = np.linspace(0.0, 1.0, LEVER_POINTS)
-        z = apex[2] + TIP_HEIGHT - bend * (1.0 - 0.5 * (3.0 * s**2 - s**3)) + 0.03 * (1.0 - s)
-        y = apex[1] - 0.05 + length * (1.0 - s)
-        rows = [np.stack([np.full_like(s, apex[0] + side * width / 2), y, z], axis=1) for side in (-1.0, 1.0)]
-        self.ribbon.SetPoints(points(self.vtk, np.concatenate(rows)))
-        self.ribbon.Modified()
+    def _on(self, x: Floats, y: Floats) -> Floats:
+        """Places on the surface, as it rises and falls there; beyond its edge those at the edge."""
+        rim = 2.0 * self.centre
+        x = np.clip(x, 0.5 * self.dx, rim[0] - 0.5 * self.dx)
+        y = np.clip(y, 0.5 * self.dy, rim[1] - 0.5 * self.dy)
+        z = self.tiles.cover(*self._pixels(x * self.unit, y * self.unit)) * self.scale[2] + LIFTED
+        return np.stack([x, y, z], axis=-1)
 
     def _draw_trace(self, seen: Seen) -> None:
         rows = np.array(seen.trace)

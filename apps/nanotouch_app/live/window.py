@@ -6,23 +6,22 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import queue
 import sys
 import threading
 import time
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
 from nanotouch import guard, record
-from nanotouch.errors import DeviceError, Error, InvalidValue
+from nanotouch.errors import DeviceError, Error
 
 from nanotouch_app.live import board, cards, hands, parts
 from nanotouch_app.live.entry import Entry
 from nanotouch_app.live.held import Held
+from nanotouch_app.live.keys import Keys
 from nanotouch_app.live.look import fitting
 from nanotouch_app.live.picture import MARGIN, Picture, save
 from nanotouch_app.live.reel import Reel, world_of
@@ -31,15 +30,6 @@ from nanotouch_app.live.remote import Remote
 FASTEST = 1.0 / 60.0  # between two pictures [s]
 SHARE = 0.5  # of one processor at most that drawing takes
 FINE, TURN = 0.1, 0.4  # with shift; degrees per pixel
-PLAIN_KEYS = {
-    "r": "retract", "p": "pause", "pause": "pause", "period": "step", "bracketleft": "slower",
-    "bracketright": "faster", "backspace": "rewind", "return": "arm", "kp_enter": "arm", "escape": "stop",
-}  # fmt: skip
-ARROWS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
-ARROW_PIXELS = 4.0
-FUNCTION_KEYS = tuple(f"f{number}" for number in range(1, 13))
-HEIGHT_KEYS = {"plus": True, "kp_add": True, "minus": False, "kp_subtract": False}
-REPEAT = 0.08  # a key that is let go for less than this [s] is held: X11 repeats it so
 
 
 class Window:
@@ -61,6 +51,7 @@ class Window:
         if dark:
             self.picture.turn_light()
         self.reel = None if recording is None else Reel(record.read(recording, untrusted=guard.is_there()))
+        self.keys, self.device = Keys(self), "wheel"
         self.interactor = self.vtk.vtkRenderWindowInteractor()
         self.interactor.SetRenderWindow(self.window)
         style = self.vtk.vtkInteractorStyleUser()
@@ -71,8 +62,8 @@ class Window:
             ("RightButtonPressEvent", self.right), ("RightButtonReleaseEvent", self.let_go),
             ("MiddleButtonPressEvent", self.middle), ("MiddleButtonReleaseEvent", self.let_go),
             ("MouseMoveEvent", self.move), ("MouseWheelForwardEvent", lambda *_: self.wheel(-1.0)),
-            ("MouseWheelBackwardEvent", lambda *_: self.wheel(1.0)), ("KeyPressEvent", self.key),
-            ("KeyReleaseEvent", self.key_up), ("ExitEvent", lambda *_: self.leave()),
+            ("MouseWheelBackwardEvent", lambda *_: self.wheel(1.0)), ("KeyPressEvent", self.keys.down),
+            ("KeyReleaseEvent", self.keys.up), ("ExitEvent", lambda *_: self.leave()),
         ):  # fmt: skip
             self.interactor.AddObserver(event, answer)
         self.interactor.AddObserver("DropFilesEvent", self._dropper())
@@ -88,7 +79,6 @@ class Window:
             self.watch(watched, leads, sideways)
         self.held, self.moved_at = Held(hands.opened(hand) if self.leads or leads else []), time.monotonic()
         self.dragging, self.at = "", np.zeros(2)
-        self.pressing, self.lift_at = False, math.inf
         self.open = True
 
     def _dropper(self) -> Any:
@@ -117,11 +107,9 @@ class Window:
             self.interactor.ProcessEvents()
             self._take()
             begun = time.monotonic()
-            self.held.move(begun - self.moved_at, self.picture.stage.unit, self.ask)
+            self.held.move(begun - self.moved_at, self.picture.stage.unit, self._ask_by_pad)
             self.moved_at = begun
-            if begun > self.lift_at:
-                self.lift_at, self.pressing = math.inf, False
-                self.ask("press", on=False)
+            self.keys.turn(begun)
             if begun < due:
                 time.sleep(min(due - begun, 0.004))
                 continue
@@ -194,6 +182,16 @@ class Window:
         except BrokenPipeError:
             self.open = False
 
+    def _ask_by_pad(self, what: str | dict[str, Any], **more: Any) -> None:
+        self.by("pad")
+        self.ask(what, **more)
+
+    def by(self, device: str) -> None:
+        """What the hand is moved with: hints follow it."""
+        if device != self.device and self.leads:
+            self.device = device
+            self.ask("device", name=device)
+
     def leave(self) -> None:
         """The window is closed."""
         self.open = False
@@ -219,7 +217,7 @@ class Window:
         """Take the tip, or a slider."""
         self.at = self._pointer()
         slider = self.picture.sliders.at(*self.at)
-        if self.picture.board and self._on_board(board.at(self.picture.board, *self.picture.corner, self.at)):
+        if self.picture.board and self.on_board(board.at(self.picture.board, *self.picture.corner, self.at)):
             return
         if self.picture.cards:
             name, self.picture.cards = cards.at(self.picture.layout.cards, *self.at), False
@@ -237,7 +235,7 @@ class Window:
         elif self._in(self.picture.layout.view, self.at):
             self.dragging = "tip"
 
-    def _on_board(self, number: int | None) -> bool:
+    def on_board(self, number: int | None) -> bool:
         """One of the choices of the board."""
         if number is None or number >= len(self.picture.board["choices"]):
             return False
@@ -247,19 +245,6 @@ class Window:
         else:
             self.ask("choose", number=number)
         return True
-
-    def _type(self, name: str) -> None:
-        """A key, while a number is typed."""
-        entry = self.picture.entry
-        assert entry is not None
-        state = entry.key(name, str(self.interactor.GetKeyCode()))
-        if state:
-            self.picture.entry = None
-        if state == "done":
-            try:
-                self.ask(entry.request())
-            except InvalidValue as error:
-                self.picture.hear({"tell": "refused", "why": str(error)})
 
     def right(self, *_: Any) -> None:
         """Take the height."""
@@ -283,13 +268,13 @@ class Window:
         at = self._pointer()
         way, self.at = at - self.at, at
         self.picture.sliders.hovered = self.picture.sliders.at(*at)
-        fine = FINE if self.interactor.GetShiftKey() else 1.0
+        fine = self.fine
         if self.dragging == "slider":
             self.picture.sliders.drag(at[0])
         elif self.dragging == "time":
             self._scrub()
         elif self.dragging == "tip":
-            self._drag(fine * way)
+            self.drag(fine * way)
         elif self.dragging == "height":
             self.ask("wheel", steps=-fine * way[1] / 4.0)
         elif self.dragging == "camera":
@@ -298,80 +283,26 @@ class Window:
             camera.Elevation(-TURN * way[1])
             camera.OrthogonalizeViewUp()
 
-    def _drag(self, pixels: Any) -> None:
+    def drag(self, pixels: Any) -> None:
+        """The tip, by a way on the screen."""
         seen = self.picture.seen
         if seen.frame is not None and seen.world:
             x, y = self.picture.stage.dragged(self.picture.stage.apex(seen), pixels)
             self.ask("move", way=(x, y, 0.0))
 
+    @property
+    def fine(self) -> float:
+        """With shift ten times finer."""
+        return FINE if self.interactor.GetShiftKey() else 1.0
+
     def wheel(self, steps: float) -> None:
         """Down and up."""
-        self.ask("wheel", steps=steps * (FINE if self.interactor.GetShiftKey() else 1.0))
+        self.step(steps, "wheel")
 
-    # --- the keyboard ---
-
-    def key(self, *_: Any) -> None:
-        """The table of the help."""
-        name = str(self.interactor.GetKeySym()).lower()
-        if self.picture.entry is not None:
-            self._type(name)
-        elif name in PLAIN_KEYS:
-            self.ask(PLAIN_KEYS[name])
-        elif name in ARROWS:
-            fine = FINE if self.interactor.GetShiftKey() else 1.0
-            self._drag(ARROW_PIXELS * fine * np.array(ARROWS[name]))
-        elif name in ("next", "prior"):
-            self.wheel(1.0 if name == "next" else -1.0)
-        elif name == "space":
-            self.lift_at = math.inf
-            if not self.pressing:
-                self.pressing = True
-                self.ask("press", on=True)
-        elif name == "z":
-            self.ask("redo" if self.interactor.GetShiftKey() else "undo")
-        elif name in "012345" and len(name) == 1:
-            seen = self.picture.seen
-            self.picture.stage.camera(name, self.picture.stage.apex(seen) if seen.world else None)
-        else:
-            self._own_key(name)
-
-    def _own_key(self, name: str) -> None:
-        """What the session does not need to know."""
-        if name == "l":
-            self.picture.turn_light()
-        elif name == "c":
-            self.picture.cards = not self.picture.cards
-        elif name == "t":
-            self.picture.menu = not self.picture.menu
-        elif name == "n" and self.picture.seen.task.get("asked"):
-            self.picture.entry = Entry(None, "your answer")
-        elif name in FUNCTION_KEYS and self.picture.board:
-            self._on_board(FUNCTION_KEYS.index(name))
-        elif name == "k":
-            self.picture.stage.colour_by_next()
-        elif name in HEIGHT_KEYS:
-            self.picture.stage.raise_heights(HEIGHT_KEYS[name])
-        elif name == "m":
-            self._turn_sound()
-        elif name == "h":
-            self.picture.help = not self.picture.help
-        elif name == "s":
-            path = f"nanotouch-{datetime.now():%Y-%m-%dT%H-%M-%S}.png"
-            save(self.vtk, self.window, path)
-            self.picture.hear({"tell": "note", "text": f"saved {path}"})
-        elif name == "q":
-            self.leave()
-
-    def _turn_sound(self) -> None:
-        try:
-            self.held.turn_sound()
-        except Error as error:
-            self.picture.hear({"tell": "refused", "why": str(error)})
-
-    def key_up(self, *_: Any) -> None:
-        """The space bar is let go: the hand lifts, unless the key only repeats."""
-        if str(self.interactor.GetKeySym()).lower() == "space":
-            self.lift_at = time.monotonic() + REPEAT
+    def step(self, steps: float, device: str) -> None:
+        """Down and up, by what the hand is moved with."""
+        self.by(device)
+        self.ask("wheel", steps=steps * self.fine)
 
 
 def main(arguments: list[str]) -> int:

@@ -48,9 +48,11 @@ export class ForceGap {
     const colour = seen.force >= 0 ? palette.repulsion : palette.attraction;
     painter.dot(...axes.at(now.gap, now.force), 5, colour, palette.panel);
     painter.text(painter.width - 14, 16, pull > 1e-3 * load ? `pull-off ${digits(pull, "N")}` : "nothing pulls", palette.ink, { align: "right" });
-    painter.text(58, painter.height - 12, "way in", palette.accent);
-    painter.text(110, painter.height - 12, "way out", palette.ink);
-    painter.text(168, painter.height - 12, "spring", palette.hold);
+    let left = 58;
+    for (const [name, one] of [["approach", palette.accent], ["retraction", palette.ink], ["spring", palette.hold]]) {
+      painter.text(left, painter.height - 12, name, one);
+      left += painter.widthOf(name) + 12;
+    }
   }
 
   // F = K (h - h_proxy): the spring that holds the tip, through the point that is now.

@@ -7,7 +7,7 @@ const live = (value) => (Math.abs(value) < DEAD ? 0 : (value - Math.sign(value) 
 
 export class Hands {
   constructor(ask, note) {
-    Object.assign(this, { ask, note, buttons: {}, last: 0, cap: [0, 0, 0], sound: null, rumbled: 0 });
+    Object.assign(this, { ask, note, buttons: {}, last: 0, cap: [0, 0, 0], sound: null, woken: false, rumbled: 0 });
   }
 
   // Some sixty times a second: width of the surface [m], what is felt.
@@ -84,27 +84,43 @@ export class Hands {
     }
   }
 
-  turnSound() {
-    if (this.sound) {
-      this.sound.context.close();
-      this.sound = null;
-      return this.note("sound off");
-    }
+  // The first click or key: browsers let no sound be made before. Then a snap and a tear are heard.
+  wake() {
+    if (!this.woken) this.#listen();
+    this.woken = true;
+  }
+
+  #listen() {
     const context = new AudioContext(), tone = context.createOscillator(), level = context.createGain();
     level.gain.value = 0;
     tone.connect(level).connect(context.destination);
     tone.start();
-    this.sound = { context, tone, level };
-    return this.note("sound on: pitch by the force, a click at snap and tear");
+    this.sound = { context, tone, level, sings: false };
+  }
+
+  // Snap and tear; the force, too; nothing.
+  turnSound() {
+    this.woken = true;
+    if (!this.sound) {
+      this.#listen();
+      return this.note("sound: a click at snap and tear");
+    }
+    if (!this.sound.sings) {
+      this.sound.sings = true;
+      return this.note("sound: pitch by the force, a click at snap and tear");
+    }
+    this.sound.context.close();
+    this.sound = null;
+    return this.note("sound off");
   }
 
   // Pitch over two octaves; every order ends by itself after 100 ms.
   #sing({ level, event }) {
     if (!this.sound) return;
-    const { context, tone, level: gain } = this.sound, now = context.currentTime;
+    const { context, tone, level: gain, sings } = this.sound, now = context.currentTime;
     tone.frequency.setTargetAtTime(220 * 4 ** level, now, 0.01);
     gain.gain.cancelScheduledValues(now);
-    gain.gain.setTargetAtTime(event ? 0.4 : level > 0.005 ? 0.12 : 0, now, event ? 0.002 : 0.02);
+    gain.gain.setTargetAtTime(event ? 0.4 : sings && level > 0.005 ? 0.12 : 0, now, event ? 0.002 : 0.02);
     gain.gain.setTargetAtTime(0, now + 0.08, 0.01);
   }
 }

@@ -7,9 +7,10 @@ const PLAIN = { r: "retract", Escape: "stop", Enter: "arm", p: "pause", Pause: "
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Input {
-  // own: what the page itself does by a key (views, light, sound, ...); reach(pixels): the way that a drag means
-  constructor(place, { ask, reach, turn, own }) {
-    Object.assign(this, { place, ask, reach, turn, own, pointers: new Map(), presses: false });
+  // own: what the page itself does by a key (views, light, sound, ...); reach(pixels): the way that a drag means;
+  // by(device): what the hand is moved with
+  constructor(place, { ask, reach, turn, own, by }) {
+    Object.assign(this, { place, ask, reach, turn, own, by, pointers: new Map(), presses: false });
     place.addEventListener("pointerdown", (event) => this.#down(event));
     place.addEventListener("pointermove", (event) => this.#move(event));
     for (const name of ["pointerup", "pointercancel"]) place.addEventListener(name, (event) => this.pointers.delete(event.pointerId));
@@ -24,7 +25,8 @@ export class Input {
     if (event.target.closest(".panel")) return; // a sheet that lies over the view
     this.place.focus({ preventScroll: true });
     this.place.setPointerCapture(event.pointerId);
-    const what = event.button === 2 ? "height" : event.button === 1 ? "camera" : "tip";
+    if (event.pointerType === "touch") this.by("finger");
+    const what = event.button === 2 || event.target.closest("#rail") ? "height" : event.button === 1 ? "camera" : "tip";
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY, what });
     event.preventDefault();
   }
@@ -49,8 +51,14 @@ export class Input {
   #wheel(event) {
     if (event.target.closest(".panel")) return;
     event.preventDefault();
+    this.by("wheel");
     const turned = (event.deltaY || event.deltaX) * (event.deltaMode === 1 ? 33 : 1); // shift turns it sideways
     this.ask({ do: "wheel", steps: Math.min(Math.max(turned / CLICK, -4), 4) * (event.shiftKey ? FINE : 1) });
+  }
+
+  #stepped(steps) {
+    this.by("keys");
+    this.ask({ do: "wheel", steps });
   }
 
   #release() {
@@ -80,7 +88,7 @@ export class Input {
     const fine = event.shiftKey ? FINE : 1;
     if (PLAIN[key]) this.ask({ do: PLAIN[key] });
     else if (ARROWS[key]) this.#drag(ARROWS[key].map((part) => ARROW * part), fine);
-    else if (key === "PageUp" || key === "PageDown") this.ask({ do: "wheel", steps: key === "PageDown" ? fine : -fine });
+    else if (key === "PageUp" || key === "PageDown") this.#stepped(key === "PageDown" ? fine : -fine);
     else if (key === " ") {
       if (!this.presses) this.ask({ do: "press", on: true });
       this.presses = true;

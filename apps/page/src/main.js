@@ -6,6 +6,7 @@ import { ContactPanel } from "./contact.js";
 import { Drop } from "./drop.js";
 import { Hands } from "./hands.js";
 import { Input } from "./input.js";
+import { Lens } from "./lens.js";
 import { Framed, Socketed, Worked } from "./link.js";
 import { Overlay } from "./overlay.js";
 import { Painter } from "./painter.js";
@@ -44,12 +45,14 @@ const seen = new Seen(table.constants, (message) => worked.draw(message), (heigh
 });
 const stage = new Stage(byId("view").insertBefore(document.createElement("div"), byId("overlay")), table.constants);
 const painter = (id) => new Painter(byId(id));
-const overlay = new Overlay(painter("overlay"), table.constants);
-const contact = new ContactPanel(painter("contact"), (message) => worked.draw(message));
+const drawnBy = (message) => worked.draw(message), lens = new Lens(drawnBy);
+const overlay = new Overlay(painter("overlay"), lens, table.constants);
+const contact = new ContactPanel(painter("contact"), drawnBy);
 const law = new ForceGap(painter("law")), chart = new History(painter("history"), table.constants);
 const words = new Words(table, ask), sliders = new Sliders(byId("sliders"), table, ask);
 const drop = new Drop(table, words, { ask, draw: (message) => worked.draw(message) }, state);
-const hands = new Hands(ask, (text) => seen.note(text, false));
+const hands = new Hands((message) => { by("pad"); ask(message); }, (text) => seen.note(text, false));
+const device = matchMedia("(pointer: coarse)").matches ? "finger" : "wheel";
 
 function ask(message) {
   if (message.note) return seen.note(message.note, true);
@@ -58,6 +61,13 @@ function ask(message) {
   asked.push(message);
   if (asked.length > KEPT) asked.shift();
   return link.ask(message);
+}
+
+// What the hand is moved with: hints follow it.
+function by(name) {
+  if (name === document.body.dataset.device) return;
+  document.body.dataset.device = name;
+  ask({ do: "device", name });
 }
 
 function take(now, bytes) {
@@ -84,7 +94,10 @@ function hear(message) {
     if (task && state.own) ask({ do: "task", name: task, lay: true });
     task = null;
   }
-  if (message.tell === "granted" && !message.operates) seen.note("You watch: another one holds the hand.", false);
+  if (message.tell === "granted") {
+    if (message.operates) ask({ do: "device", name: document.body.dataset.device ?? device });
+    else seen.note("You watch: another one holds the hand.", false);
+  }
   if (message.tell === "refused") {
     sliders.refused(message.field);
     if (state.given) ask({ do: "preset", name: FIRST }); // what the link names cannot be opened
@@ -97,11 +110,13 @@ function hear(message) {
 function lay(surface) {
   stage.lay(surface);
   contact.forget();
+  lens.forget();
 }
 
 // The library is there: the first sample, or what the link says.
 function begin({ fields }) {
   state.fields = fields;
+  by(device);
   if (!state.own) return;
   const preset = fragment.get("preset") ?? FIRST, scene = fragment.get("scene");
   let laid = false;
@@ -135,6 +150,7 @@ function dress(name) {
 const OWN = {
   c: () => words.cards(seen.world?.title, () => byId("file").click()),
   t: () => words.tasks(),
+  d: () => showAll(!showsAll()),
   h: () => words.help(),
   l: () => dress(document.body.dataset.look === "light" ? "dark" : "light"),
   "+": () => stage.grid && stage.raiseHeights(true),
@@ -149,6 +165,15 @@ const OWN = {
   n: () => byId("answer")?.focus(),
   e: () => seen.world && words.scene(sceneText(), (text) => taken(text), copyLink),
 };
+
+// It begins with one sentence, one slider, one chart; all else by one button.
+const showsAll = () => document.body.classList.contains("all");
+function showAll(on) {
+  document.body.classList.toggle("all", on);
+  const button = document.querySelector("[data-own=d]");
+  button.setAttribute("aria-expanded", String(on));
+  button.textContent = on ? "Less" : "More";
+}
 
 const named = (what) => table.constants.PROPERTY_NAMES[what]?.[0] ?? what;
 
@@ -202,7 +227,8 @@ const turn = (dx, dy) => { stage.turn(dx, dy); dirty = true; };
 new Input(byId("view"), { ask: (message) => {
   if (message.do === "stop" && words.close()) return;
   ask(message);
-}, reach, turn, own });
+}, reach, turn, own, by });
+for (const gesture of ["pointerdown", "keydown"]) window.addEventListener(gesture, () => hands.wake(), { once: true, capture: true });
 for (const button of document.querySelectorAll("[data-act]")) button.onclick = () => ask({ do: button.dataset.act });
 for (const button of document.querySelectorAll("[data-own]")) button.onclick = (event) => own(button.dataset.own, event);
 new ResizeObserver(() => { stage.resize(); dirty = true; }).observe(byId("view"));
@@ -227,7 +253,7 @@ function draw(now) {
   for (const [name, id] of [["contact", "contact"], ["law", "law"], ["sliders", "sliders"]])
     byId(id).style.visibility = hides.has(name) ? "hidden" : "visible";
   if (stage.grid) stage.render();
-  overlay.draw(seen, stage, palette);
+  dirty = overlay.draw(seen, stage, palette, { still, all: showsAll() });
   contact.draw(seen, palette, still);
   law.draw(seen, palette);
   chart.draw(seen, palette);
@@ -240,5 +266,5 @@ if (!stage.works) byId("lights").textContent = "This browser gives no WebGL 2: t
 dress(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 const wasm = Uint8Array.from(atob(byId("wasm").textContent), (letter) => letter.charCodeAt(0));
 worked.begin({ wasm, own: state.own, table: { ...table, palettes: null, help: null } });
-window.nanotouch = { seen, counters, stage, contact, asked }; // to look at, as the tests do
+window.nanotouch = { seen, counters, stage, lens, asked }; // to look at, as the tests do
 requestAnimationFrame(draw);

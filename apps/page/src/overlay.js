@@ -4,7 +4,7 @@
 import { digits, stepUp } from "./units.js";
 
 const BAND = 0.15, RING = 13; // of the picture's height: the band under the largest planned force; [pixels]
-const SHOWN = 2.5; // an event [s]
+const BARS = 60; // that the bars of force take below the large number [pixels]
 const NARROW = 480; // a phone's [pixels]
 const squeezed = (share) => Math.sign(share) * Math.sqrt(Math.min(Math.abs(share), 1));
 
@@ -13,23 +13,17 @@ const heightsOf = ({ dent, ends: [low, high], low: ground, relief }) => (dent
   ? `${digits(low - ground, "m", 2)} to ${digits(high - ground, "m", 2)}` : `0 to ${digits(relief, "m")}`);
 
 export class Overlay {
-  constructor(painter, constants) { Object.assign(this, { painter, constants }); }
+  constructor(painter, lens, constants) { Object.assign(this, { painter, lens, constants }); }
 
-  draw(seen, stage, palette) {
+  // Whether it changes by itself, too: a lens that grows.
+  draw(seen, stage, palette, { still, all }) {
     const { painter } = this;
-    if (!painter.begin() || !seen.now || !seen.world || !stage.grid) return;
+    if (!painter.begin() || !seen.now || !seen.world || !stage.grid) return false;
     this.#proxy(seen, stage, palette);
     this.#scales(stage, palette);
-    this.#bars(seen, palette);
-    this.#event(seen, palette);
-  }
-
-  // What has just snapped or torn: one large number.
-  #event({ event }, palette) {
-    const { painter } = this;
-    if (!event || performance.now() - event.at > 1000 * SHOWN) return;
-    const size = painter.width < NARROW ? 20 : 34;
-    painter.text(0.5 * painter.width, 0.22 * painter.height, event.text, palette.accent, { align: "center", bold: true, size });
+    if (all) this.#bars(seen, palette);
+    if (seen.hides.has("contact") || seen.hides.has("surface")) return false;
+    return this.lens.draw(painter, seen, stage.pixel(stage.apex(seen.now)), palette, { still, below: all ? BARS : 0 });
   }
 
   #proxy(seen, stage, palette) {
@@ -56,20 +50,29 @@ export class Overlay {
     const { painter } = this, { grid } = stage, length = stepUp(0.12 * grid.width * grid.unit);
     const a = stage.pixel([0.02, 0, 0]), b = stage.pixel([0.02 + length / grid.unit, 0, 0]);
     const pixels = Math.hypot(b[0] - a[0], b[1] - a[1]), y = painter.height - 22;
+    const told = this.#told(stage, painter.width < NARROW), has = Boolean(told);
+    const wide = 36 + Math.max(pixels + 10 + painter.widthOf(digits(length, "m", 1)), has ? 130 + painter.widthOf(told) : 0);
+    painter.box(8, y - (has ? 40 : 12), wide, has ? 52 : 24, palette.panel, 0.86);
     painter.line([[18, y], [18 + pixels, y]], palette.ink, 3);
     painter.text(28 + pixels, y, digits(length, "m", 1), palette.ink);
-    const { table, ends, shown } = stage, isHeight = shown === "height";
-    if (isHeight && !(grid.relief > 0)) return;
+    if (!has) return;
+    const { table } = stage;
     for (let part = 0; part < 24; ++part) {
       const place = (part / 24) * (table.length - 1), i = Math.floor(place), share = place - i;
       const colour = table[i].map((low, k) => Math.round((1 - share) * low + share * table[Math.min(i + 1, table.length - 1)][k]));
       painter.area([[18 + 5 * part, y - 31], [24 + 5 * part, y - 31], [24 + 5 * part, y - 21], [18 + 5 * part, y - 21]], colour);
     }
-    const narrow = painter.width < NARROW;
+    painter.text(148, y - 26, told, palette.ink);
+  }
+
+  // What the colours mean; "" where there are none.
+  #told({ grid, ends, shown }, narrow) {
+    if (shown !== "height") {
+      const [name, unit] = this.constants.PROPERTY_NAMES[shown];
+      return `${name} ${ends.map((end) => digits(end, unit)).join(" to ")}`;
+    }
     const drawn = grid.factor === 1 ? "" : narrow ? `, x ${grid.factor}` : `, drawn ${grid.factor} times as high`;
-    const [name, unit] = isHeight ? [] : this.constants.PROPERTY_NAMES[shown];
-    painter.text(148, y - 26, isHeight ? `heights ${heightsOf(grid)}${drawn}`
-      : `${name} ${ends.map((end) => digits(end, unit)).join(" to ")}`, palette.ink);
+    return grid.relief > 0 ? `heights ${heightsOf(grid)}${drawn}` : "";
   }
 
   // Force at the tip and at the hand, signed, with ticks at what can just be told apart.
@@ -78,7 +81,7 @@ export class Overlay {
     const noise = (probe.spring_constant * probe.sensitivity * probe.noise) / 6, scale = seen.world.settings.gains.alpha_f;
     const full = Math.max(seen.load, 1.2 * seen.pullOff), left = painter.width - width - 12;
     const narrow = painter.width < NARROW, low = narrow ? 12 : painter.height - 136; // above, where there is no room below
-    painter.area([[left, low], [left + width, low], [left + width, low + 124], [left, low + 124]], palette.panel, 0.86);
+    painter.box(left, low, width, 124, palette.panel, 0.86);
     const told = seen.reading && !seen.stale ? seen.reading.force : 0;
     const rows = [[narrow ? "tip" : "at the tip", 1, constants.TIP_STEP * noise], [narrow ? "hand" : "at the hand", scale, constants.HAND_STEPS[1]]];
     rows.forEach(([name, factor, step], number) => {

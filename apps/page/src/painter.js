@@ -19,7 +19,7 @@ export class Painter {
     if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
     Object.assign(this, { width, height });
     this.context.setTransform(scale, 0, 0, scale, 0, 0);
-    if (fill) this.area([[0, 0], [width, 0], [width, height], [0, height]], fill);
+    if (fill) this.box(0, 0, width, height, fill);
     else this.context.clearRect(0, 0, width, height);
     return true;
   }
@@ -29,6 +29,8 @@ export class Painter {
     this.context.fillStyle = css(fill, opacity);
     this.context.fill();
   }
+
+  box(x, y, width, height, fill, opacity) { this.area([[x, y], [x + width, y], [x + width, y + height], [x, y + height]], fill, opacity); }
 
   line(points, colour, width = 1.5, dashed = false) {
     if (points.length < 2) return;
@@ -43,7 +45,8 @@ export class Painter {
     points.forEach(([x, y], i) => (i ? this.context.lineTo(x, y) : this.context.moveTo(x, y)));
   }
 
-  dot(x, y, radius, fill, edge) {
+  dot(x, y, radius, fill, edge, width = fill ? 1.5 : 2.5) {
+    if (!(radius > 0)) return;
     this.context.beginPath();
     this.context.arc(x, y, radius, 0, 2 * Math.PI);
     if (fill) {
@@ -52,13 +55,49 @@ export class Painter {
     }
     if (!edge) return;
     this.context.setLineDash([]);
-    Object.assign(this.context, { strokeStyle: css(edge), lineWidth: fill ? 1.5 : 2.5 });
+    Object.assign(this.context, { strokeStyle: css(edge), lineWidth: width });
     this.context.stroke();
+  }
+
+  // What is drawn meanwhile is seen in a circle alone.
+  within(x, y, radius, draw) {
+    this.context.save();
+    this.context.beginPath();
+    this.context.arc(x, y, radius, 0, 2 * Math.PI);
+    this.context.clip();
+    draw();
+    this.context.restore();
+  }
+
+  // A light that fades outwards, from a radius on.
+  glow(x, y, radius, colour, strength, from) {
+    const light = this.context.createRadialGradient(x, y, from, x, y, radius);
+    light.addColorStop(0, css(colour, strength));
+    light.addColorStop(1, css(colour, 0));
+    this.context.beginPath();
+    this.context.arc(x, y, radius, 0, 2 * Math.PI);
+    if (from > 0) this.context.arc(x, y, from, 0, 2 * Math.PI, true);
+    this.context.fillStyle = light;
+    this.context.fill();
+  }
+
+  // A length, its words to the left.
+  scale(left, right, y, words, colour) {
+    this.line([[left, y], [right, y]], colour, 2);
+    for (const end of [left, right]) this.line([[end, y - 4], [end, y + 4]], colour, 2);
+    this.text(left - 8, y, words, colour, { align: "right" });
+  }
+
+  #letters({ size = 12, bold = false } = {}) { return `${bold ? "600 " : ""}${size}px system-ui, sans-serif`; }
+
+  widthOf(words, of) {
+    this.context.font = this.#letters(of);
+    return this.context.measureText(words).width;
   }
 
   text(x, y, words, colour, { align = "left", size = 12, bold = false } = {}) {
     Object.assign(this.context, { fillStyle: css(colour), textAlign: align, textBaseline: "middle",
-      font: `${bold ? "600 " : ""}${size}px system-ui, sans-serif` });
+      font: this.#letters({ size, bold }) });
     this.context.fillText(words, x, y);
   }
 }

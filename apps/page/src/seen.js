@@ -17,7 +17,7 @@ export class Seen {
     });
     Object.assign(this, { constants, draw, dented: null, world: null, clock: { speed: 1, paused: false, slowdown: 1 }, task: {}, notes: [],
       waiting: new Set(), now: null, reading: null, readAt: 0, arrived: -Infinity, updates: 0, law: null, place: {},
-      placedAt: 0, load: 1, pullOff: 0, event: null });
+      placedAt: 0, load: 1, pullOff: 0, event: null, guide: "" });
     this.forget();
   }
 
@@ -41,7 +41,8 @@ export class Seen {
         break;
       case "dents": this.yields.hear(message.dents); break;
       case "particles": this.events.push(...message.events); break;
-      case "event": this.event = { at: performance.now(), text: message.text }; break;
+      case "event": this.event = { at: performance.now(), text: message.text, kind: message.kind }; break;
+      case "guide": this.guide = message.text; break;
       case "task": this.task = message.name ? message : {}; break;
       case "refused":
         this.waiting.delete(message.field);

@@ -141,6 +141,7 @@ export function turned(radius, halfAngle, ball, tall) {
     const widening = last < Math.PI / 2 ? Math.tan(halfAngle) : 0;
     profile.push([end[0] + (tall - end[1]) * widening, tall, Math.cos(halfAngle), -Math.sin(halfAngle)]);
   }
+  profile.push([profile.at(-1)[0], profile.at(-1)[1], 0, 1], [0, profile.at(-1)[1], 0, 1]); // it is closed above
   const around = 41, points = [], normals = [];
   for (const [r, h, nr, nz] of profile)
     for (let k = 0; k < around; ++k) {
@@ -180,16 +181,53 @@ export function ring(inner, outer, around = 65) {
   return { points, normals, cells: quads(2, around) };
 }
 
-// The lever: a beam that is clamped behind, w = zeta (3 s^2 - s^3)/2.
-export function ribbon(at, bend, { LEVER, LEVER_POINTS: count, TIP_HEIGHT }) {
-  const [length, width] = LEVER, points = new Float32Array(6 * count);
-  for (const [row, side] of [[0, -1], [1, 1]])
-    for (let i = 0; i < count; ++i) {
-      const s = i / (count - 1);
-      const z = at[2] + TIP_HEIGHT - bend * (1 - 0.5 * (3 * s * s - s ** 3)) + 0.03 * (1 - s);
-      points.set([at[0] + (side * width) / 2, at[1] - 0.05 + length * (1 - s), z], 3 * (row * count + i));
+// Corners of a ring across a lever, closed: left and right below, right and left above.
+const corners = (x, y, half, low, high) => [[x - half, y, low], [x + half, y, low], [x + half, y, high], [x - half, y, high], [x - half, y, low]];
+const closed = (place) => Array(5).fill(place);
+
+// The lever with its chip: a beam that is clamped behind, w = zeta (3 s^2 - s^3)/2; its nose is before the tip.
+export function lever(at, bend, { LEVER, LEVER_POINTS: count, TIP_HEIGHT, NOSE, TILT, CHIP }) {
+  const [length, width, thick] = LEVER, [back, wide, tall] = CHIP, foot = at[2] + TIP_HEIGHT, rings = [];
+  const ring = (y, half, low, high) => rings.push(corners(at[0], y, half, low, high));
+  const root = at[1] + length, top = foot - bend + TILT * length;
+  rings.push(closed([at[0], root + back, top]));
+  ring(root + back, wide / 2, top, top + tall);
+  ring(root, wide / 2, top, top + tall);
+  for (let i = 0; i < count; ++i) {
+    const s = i / (count - 1), y = root - (length + NOSE) * s, ahead = Math.max((at[1] - y) / NOSE - 0.5, 0);
+    const z = foot - bend * (1 - 0.5 * (3 * s * s - s ** 3)) + TILT * (y - at[1]);
+    ring(y, (width / 2) * (1 - ahead), z, z + thick);
+  }
+  rings.push(closed([at[0], at[1] - NOSE, rings.at(-1)[0][2]]));
+  return { points: Float32Array.from(rings.flat(2)), cells: quads(rings.length, 5) };
+}
+
+// A strip that lies on the surface, from a place along y.
+export function stripOn(map, [x, y], [length, width], lifted, count = 24) {
+  const points = new Float32Array(9 * count);
+  for (let i = 0, at = 0; i < count; ++i)
+    for (let side = -1; side <= 1; ++side, at += 3) {
+      const u = Math.min(Math.max(x + (side * width) / 2, map.dx / 2), map.width - map.dx / 2);
+      const v = Math.min(Math.max(y + (length * i) / (count - 1), map.dy / 2), map.height - map.dy / 2);
+      points.set([u, v, (map.at(u * map.unit, v * map.unit) - map.low) * map.scale + lifted], at);
     }
-  return { points, cells: quads(2, count) };
+  return { points, cells: quads(count, 3) };
+}
+
+// The walls of the block whose top the surface is, down to a floor.
+export function walls(map, floor) {
+  const { rows, columns } = map, rim = [];
+  for (let i = 0; i < columns; ++i) rim.push([0, i]);
+  for (let j = 1; j < rows; ++j) rim.push([j, columns - 1]);
+  for (let i = columns - 2; i >= 0; --i) rim.push([rows - 1, i]);
+  for (let j = rows - 2; j >= 0; --j) rim.push([j, 0]);
+  const points = new Float32Array(6 * rim.length);
+  rim.forEach(([j, i], at) => {
+    const place = [(i + 0.5) * map.dx, (j + 0.5) * map.dy];
+    points.set([...place, ((map.heights[j * columns + i] - map.low) * map.built) / map.unit], 3 * at);
+    points.set([...place, -floor], 3 * (rim.length + at));
+  });
+  return { points, cells: quads(2, rim.length) };
 }
 
 // A disc that lies on the surface, as it rises and falls there.
@@ -198,8 +236,8 @@ export function laidOn(map, middle, size, lifted, rings = 6, round = 33) {
   for (let ring = 0, at = 0; ring < rings; ++ring)
     for (let k = 0; k < round; ++k, at += 3) {
       const turn = (2 * Math.PI * k) / (round - 1), r = (size * ring) / (rings - 1);
-      const x = Math.min(Math.max(middle[0] + r * Math.cos(turn), 0), map.width);
-      const y = Math.min(Math.max(middle[1] + r * Math.sin(turn), 0), map.height);
+      const x = Math.min(Math.max(middle[0] + r * Math.cos(turn), map.dx / 2), map.width - map.dx / 2);
+      const y = Math.min(Math.max(middle[1] + r * Math.sin(turn), map.dy / 2), map.height - map.dy / 2);
       points.set([x, y, (map.at(x * map.unit, y * map.unit) - map.low) * map.scale + lifted], at);
     }
   return { points, cells: quads(rings, round) };

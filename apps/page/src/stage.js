@@ -13,7 +13,7 @@ import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkRenderWindow from "@kitware/vtk.js/Rendering/Core/RenderWindow";
 import vtkRenderer from "@kitware/vtk.js/Rendering/Core/Renderer";
 import { DrawnBalls } from "./balls.js";
-import { dented, grid, laidOn, ribbon, stepped, tile, tileValues, turned } from "./shapes.js";
+import { dented, grid, laidOn, lever, stepped, stripOn, tile, tileValues, turned, walls } from "./shapes.js";
 
 const TILE = 128, MOST = 256; // pixels to a side of a tile, and of the whole mesh
 const GLASSY = 0.45; // of a tip that dents the sample
@@ -39,7 +39,7 @@ export class Stage {
   #light() {
     this.renderer.removeAllLights();
     this.renderer.setAutomaticLightCreation(false);
-    for (const [place, strength] of [[[-1.3, -0.9, 2.1], 0.85], [[1.2, 1.6, 1.2], 0.3]]) {
+    for (const [place, strength] of this.constants.LIGHTS) {
       const light = vtkLight.newInstance({ positional: false, intensity: strength });
       light.setLightTypeToSceneLight();
       light.setPosition(...place.map((part, axis) => part + [0.5, 0.5, 0][axis]));
@@ -83,20 +83,28 @@ export class Stage {
         this.places.push([row, column]);
       }
     this.rebuilt += this.grid.heights.byteLength;
-    this.shadowData = [1, 0.7, 0.4].map(() => vtkPolyData.newInstance());
+    this.shadowData = [...this.constants.SHADES, ...this.constants.BEAM_SHADES].map(() => vtkPolyData.newInstance());
     this.shadows = this.shadowData.map((data) => {
       const actor = this.#actor(data, false);
       actor.getProperty().setColor(0, 0, 0);
-      actor.getProperty().setOpacity(0.14);
+      actor.getProperty().setOpacity(0.12);
       return actor;
     });
+    this.#raiseWalls();
     this.traceData = vtkPolyData.newInstance();
     this.trace = this.#actor(this.traceData, false);
     this.trace.getProperty().setLineWidth(3);
     this.shape = "";
-    this.others = [...this.shadows, this.trace];
+    this.others = [...this.shadows, this.trace, this.walls];
     this.camera("0");
     if (this.palette) this.paint(this.palette);
+  }
+
+  #raiseWalls() {
+    if (this.walls) this.renderer.removeActor(this.walls);
+    this.walls = this.#mesh(walls(this.grid, this.constants.FLOOR));
+    this.walls.getProperty().setAmbient(0.28);
+    this.walls.setVisibility(this.visible);
   }
 
   // The tip has changed the surface, and can dent it by so much [m]: tiles are made anew where it has.
@@ -108,6 +116,7 @@ export class Stage {
       actor.setScale(1, 1, map.factor / map.built);
       this.rebuilt += 4 * TILE * TILE;
     });
+    if (all) this.#raiseWalls();
     this.lastTraced = null;
     this.tip?.getProperty().setOpacity(GLASSY); // what it leaves lies below it
     this.paint(this.palette);
@@ -157,6 +166,7 @@ export class Stage {
     table.forEach((colour, i) => this.colours.addRGBPoint(low + ((high - low) * i) / (table.length - 1), ...unit(colour)));
     this.colours.setMappingRange(low, high);
     for (const actor of [this.tip, this.lever]) actor?.getProperty().setColor(...unit(palette.tip));
+    this.walls.getProperty().setColor(...unit(palette.heights[1]));
   }
 
   // Of what is shown by colour; its colours from low to high.
@@ -182,14 +192,14 @@ export class Stage {
     const { grid: map } = this;
     map.factor = stepped(map.factor, up, map.relief / map.unit, this.constants);
     map.scale = map.factor / map.unit;
-    for (const actor of this.tiles) actor.setScale(1, 1, map.factor / map.built);
+    for (const actor of [...this.tiles, this.walls]) actor.setScale(1, 1, map.factor / map.built);
     this.lastTraced = null;
   }
 
   lights(on) {
     if (on === this.visible) return;
     this.visible = on;
-    for (const actor of [...this.tiles, ...this.shadows, this.trace, ...this.balls.actors]) actor.setVisibility(on);
+    for (const actor of [...this.tiles, ...this.shadows, this.walls, this.trace, ...this.balls.actors]) actor.setVisibility(on);
   }
 
   // --- the instrument: made anew when another tip is mounted ---
@@ -207,7 +217,9 @@ export class Stage {
     this.tip.getProperty().setOpacity(this.grid.dent ? GLASSY : 1);
     this.leverData = vtkPolyData.newInstance();
     this.lever = this.#actor(this.leverData);
-    this.others = [...this.shadows, this.trace, this.tip, this.lever];
+    this.lever.getProperty().setSpecular(0.2);
+    this.lever.getProperty().setAmbient(0.2);
+    this.others = [...this.shadows, this.trace, this.walls, this.tip, this.lever];
     this.paint(this.palette);
   }
 
@@ -215,7 +227,7 @@ export class Stage {
     const data = vtkPolyData.newInstance();
     data.getPoints().setData(points, 3);
     data.getPolys().setData(cells);
-    data.getPointData().setNormals(vtkDataArray.newInstance({ name: "normals", values: normals, numberOfComponents: 3 }));
+    if (normals) data.getPointData().setNormals(vtkDataArray.newInstance({ name: "normals", values: normals, numberOfComponents: 3 }));
     return this.#actor(data);
   }
 
@@ -234,12 +246,14 @@ export class Stage {
     const at = this.apex(now), { grid: map, constants } = this;
     this.tip.setPosition(...at);
     const bend = seen.load > 0 ? constants.BEND * Math.min(Math.max(seen.force / seen.load, -1.5), 1.5) : 0;
-    this.#set(this.leverData, ribbon(at, bend, constants));
-    const above = Math.max(at[2] - (map.at(now.tip[0], now.tip[1]) - map.low) * map.scale, 0);
-    [1, 0.7, 0.4].forEach((share, i) => {
-      const size = constants.SHADOW * share * (1 + 3 * above);
-      this.#set(this.shadowData[i], laidOn(map, [at[0] + 0.6 * above, at[1] - 0.3 * above], size, constants.LIFTED));
-    });
+    this.#set(this.leverData, lever(at, bend, constants));
+    const above = Math.max(at[2] - (map.at(now.tip[0], now.tip[1]) - map.low) * map.scale, 0), [right, back] = constants.CAST;
+    const cast = (height) => [at[0] + right * height, at[1] + back * height];
+    constants.SHADES.forEach((share, i) => this.#set(this.shadowData[i],
+      laidOn(map, cast(above), constants.SHADOW * share * (1 + 3 * above), constants.LIFTED)));
+    const [length, width] = constants.LEVER, [x, y] = cast(above + constants.TIP_HEIGHT);
+    constants.BEAM_SHADES.forEach((share, i) => this.#set(this.shadowData[constants.SHADES.length + i],
+      stripOn(map, [x, y - constants.NOSE * share], [length, width * share], constants.LIFTED)));
     this.#drawTrace(seen);
   }
 

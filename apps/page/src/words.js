@@ -29,6 +29,7 @@ export class Words {
     if (!seen.world || !seen.now) return;
     const { clock, world } = seen, slow = clock.slowdown > 1.05 && !clock.paused ? ` · machine slow: ${clock.slowdown.toFixed(1)} times` : "";
     byId("title").textContent = world.title;
+    if (byId("guide").textContent !== seen.guide) byId("guide").textContent = seen.guide;
     document.title = `${world.title} · nanotouch`;
     byId("about").textContent = [world.source ?? "simulated", world.felt].filter(Boolean).join("  ·  ");
     byId("clock").textContent = `${clock.paused ? "PAUSED " : ""}${clock.speed}x${slow}${clock.recorded ? " · rec" : ""}`;
@@ -37,13 +38,14 @@ export class Words {
     const { state, reasons } = seen.now, names = this.table.reasons.filter((_, bit) => (reasons >>> bit) & 1);
     byId("state").textContent = this.table.states[state];
     byId("dot").style.background = `var(--${STATES[state]})`;
+    byId("facts").toggleAttribute("data-runs", !state && !seen.stale); // what it is worth to know is among all else
     byId("facts").textContent = seen.stale ? `no frame for ${seen.age.toFixed(1)} s: nothing is felt`
       : state ? `${names.join(", ") || "stopped"}. Enter: go on` : clock.facts ?? "";
   }
 
   #notes(seen) {
     const last = seen.notes.findLast((note) => performance.now() - note.at < 1000 * this.table.constants.NOTED);
-    const words = last?.text ?? seen.world?.hint ?? "";
+    const words = last?.text ?? "";
     if (words === this.told) return;
     this.told = words;
     Object.assign(byId("note"), { textContent: words, className: !last ? "" : last.bad ? "bad" : "told" });
@@ -133,7 +135,7 @@ export class Words {
 
   help() {
     this.#sheet("h", element("h2", { textContent: "Mouse, touch screen and keys" }),
-      element("dl", {}, ...[...this.table.help.filter(([key]) => key !== "Q"), ["one finger, two fingers", "over the surface; down and up"],
+      element("dl", {}, ...[...this.table.help.filter(([key]) => key !== "Q"), ["one finger, two fingers", "over the surface; down and up"], ["one finger on the bar", "down and up"],
         ["E", "the scene as text and as a link"], ["G", "connect a SpaceMouse"]].flatMap(([key, does]) =>
         [element("dt", { textContent: key }), element("dd", { textContent: does })])));
   }
