@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Faults of the list in docs/evidence/safety.md that lie below a session, on the drivers themselves: touch step, half
  * on converters, spidev's driver whose system calls end in a model of the kernel's, and the code of the GPIO lines on a
- * fake libgpiod. Single, and each after each other one. Prints the tables of docs/hardware.md. */
+ * fake libgpiod. Single, and each after each other one. Prints the tables of docs/evidence/hardware.md. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
