@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import nanotouch as nt
+import numpy as np
 import pytest
 from desks import KINDS, OnDesk, awaited, placed
 from nanotouch_app.devices import bridge, calibration, guide, hand, launch, table
@@ -34,7 +35,7 @@ def device(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.M
 
 
 def session_of(device: OnDesk, mailbox: str) -> nt.Session:
-    return live.opened(of_preset("silicon_in_air"), table.named(device.kind.name), mailbox, recorded=True)
+    return live.opened(of_preset("silicon_in_air"), table.named(device.kind.name), mailbox, recorded=False)
 
 
 def test_the_whole_run(device: OnDesk) -> None:
@@ -64,10 +65,11 @@ def _is_felt(device: OnDesk, session: nt.Session) -> None:
     assert device.size < 0.3
     distance = 0.0
     while device.pressed() > -0.5 and distance < 0.05:
-        distance += 2e-4
+        distance += 1e-4
         device.hold("down", distance)
         ticks = session.progress.ticks
-        awaited(lambda ticks=ticks: session.progress.ticks > ticks + 50, "the session goes on")
+        awaited(lambda ticks=ticks: session.progress.ticks > ticks + 200, "the session goes on")
+        assert session.state in ("RUN", "HOLD"), session.reasons
     awaited(lambda: device.pressed() < -0.5, "a force against the hand")
     assert device.size <= table.named(device.kind.name).force + 0.01  # of the wheel: a step of its level
 
@@ -102,12 +104,12 @@ def test_one_command_from_the_desk_to_a_recorded_force(
     ended = threading.Event()
 
     def hand() -> None:
-        distance = 0.0
-        while omega.pressed() > -0.5 and distance < 0.05:
-            distance += 1e-4
-            omega.hold("down", distance)
+        """Down by 1 cm/s until it is felt: the surface is 5 mm below where it was when the session began."""
+        begun = time.monotonic()
+        while omega.pressed() > -0.5 and (elapsed := time.monotonic() - begun) < 20.0:
+            omega.hold("down", 0.01 * elapsed)
             time.sleep(0.01)
-        if not ended.wait(0.2):
+        if not ended.wait(0.5):
             signal.raise_signal(signal.SIGINT)
 
     person = threading.Timer(1.0, hand)
@@ -122,6 +124,7 @@ def test_one_command_from_the_desk_to_a_recorded_force(
     assert "force on the hand at most 5 N" in said
     assert "below 0.10 N friction holds it" in said
     assert calibration.read(calibration.path_of("forcedimension")) == turned
+    assert "first force" in said, said
     (seconds,) = re.findall(r"first force on the hand ([\d.]+) s after the command", said)
     assert float(seconds) < 60.0
     recording = nt.record.read(out)
@@ -169,7 +172,10 @@ def test_a_force_beyond_the_range_or_no_number_reaches_no_device() -> None:
     """Nor does a weight that is carried while nobody drives."""
 
     class Asks:
-        is_armed = True
+        is_armed, age = True, 0.0
+
+        def now(self) -> int:
+            return round(1e9 * self.age)
 
         def ask(self) -> nt.mailbox.Request:
             return nt.mailbox.Request(self.is_armed, "RUN", 0, 0, self.target, 0.0, 0.0, 0.0)
@@ -188,5 +194,31 @@ def test_a_force_beyond_the_range_or_no_number_reaches_no_device() -> None:
     assert heavy.ask().target == (0.0, 0.0, -1.9)
     asks.target = (0.0, 0.0, -4.0)
     assert heavy.ask().target == (0.0, 0.0, -4.0)
+    for age, share in ((0.03, 1.0), (0.055, 0.5), (0.08, 0.0), (10.0, 0.0)):  # a session that hangs
+        asks.age, asks.target = age, (1.0, 0.0, -2.0)
+        assert box.ask().target == pytest.approx((share, 0.0, -2.0 * share), abs=1e-6)
+    asks.age = 0.0
     asks.is_armed, asks.target = False, (0.0, 0.0, 0.0)
     assert heavy.ask().target == (0.0, 0.0, 0.0)
+
+
+def test_touch_says_what_a_script_leads_and_what_the_hand(
+    omega: OnDesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It refused "operator_force = 0.2 N: valid is 0 .. 0 N"."""
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    options = ["--no-window", "--no-pictures", "--duration", "0.3s", "--out", str(tmp_path / "out")]
+    assert main(["touch", "--hand", "forcedimension", *options]) == 0, capsys.readouterr().err
+    said = capsys.readouterr().out
+    assert "your hand leads the tip, down and up; the script leads nothing" in said
+    rows = nt.record.read(tmp_path / "out" / "recording.mcap")
+    assert len(rows.time) > 1000
+    assert np.all(np.isnan(rows.operator_force))  # it has no gauge
+    assert omega.size == 0.0
+
+
+def test_a_script_that_pushes_a_device_is_refused_in_words(omega: OnDesk) -> None:
+    with launch.Launched(table.named("forcedimension")) as running:
+        session = session_of(omega, running.name)
+        with pytest.raises(nt.Error, match=r"a device, which a hand leads .x and y of the tip may be scripted"):
+            session.run(operator=[nt.Input(0.2, 0.0, 0.0, 0.1)])

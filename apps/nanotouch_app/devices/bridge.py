@@ -19,6 +19,7 @@ import signal
 import sys
 import threading
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -31,8 +32,12 @@ from nanotouch_app.devices.table import DEVICES, Device, named
 
 PATIENCE = 6.0
 """until the first reading [s]"""
-TIMEOUT = 0.1
-"""of the mailbox [s]"""
+TIMEOUT = 0.5
+"""of the mailbox: who is silent for so long is lost; a busy machine may stop a program for a tenth of that [s]"""
+PRIORITY = 10
+"""of SCHED_FIFO"""
+FRESH, GONE = 0.03, 0.08
+"""age of a request up to which its force is whole, and from which there is none: a session may hang [s]"""
 NOTHING = (0.0, 0.0, 0.0)
 """no force [N]"""
 
@@ -72,9 +77,12 @@ class Box:
     def ask(self) -> mailbox.Request:
         """What the session wants."""
         request = self._device.ask()
-        if not request.is_armed or not all(map(math.isfinite, request.target)):
+        share = (GONE - 1e-9 * (self._device.now() - request.time)) / (GONE - FRESH)
+        if not request.is_armed or share <= 0.0 or not all(map(math.isfinite, request.target)):
             return request._replace(target=NOTHING)
-        return request._replace(target=self._bounded(self._found.force(request.target)))
+        force = self._bounded(self._found.force(request.target))
+        x, y, z = (min(share, 1.0) * f for f in force)
+        return request._replace(target=(x, y, z))
 
     def _bounded(self, force: Sequence[float]) -> tuple[float, float, float]:
         x, y, z = (
@@ -141,6 +149,12 @@ def _listen(stopped: threading.Event) -> None:
     threading.Thread(target=wait, daemon=True).start()
 
 
+def _run_first() -> None:
+    """Before other programs, where the system grants it: a reading that is late holds the session."""
+    with suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="bridge", description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("device", metavar="DEVICE", help=", ".join(DEVICES))
@@ -159,6 +173,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program."""
     args = _parser().parse_args(arguments)
     stopped = threading.Event()
+    _run_first()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stopped.set())
     if args.child:

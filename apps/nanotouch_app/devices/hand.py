@@ -48,9 +48,10 @@ class Hand(Protocol):
 
 
 def capabilities(axes: int, period: float, reach: float, force: float) -> Capabilities:
-    """Of a device with motors and no force sensor: places within +- ``reach`` [m], forces within +- ``force`` [N]."""
+    """Of a device with motors and no force sensor: places within +- ``reach`` [m], twice that once a calibration has
+    moved its middle; forces within +- ``force`` [N]."""
     numbers = range(3) if axes == 3 else (2,)
-    reads = [Channel("position", "m", axis=axis, minimum=-reach, maximum=reach) for axis in numbers]
+    reads = [Channel("position", "m", axis=axis, minimum=-2.0 * reach, maximum=2.0 * reach) for axis in numbers]
     drives = [
         Channel("motor force", "N", driven=True, axis=axis, minimum=-force, maximum=force, safe=0.0) for axis in numbers
     ]

@@ -53,7 +53,7 @@ BUTTONS = ("a", "b", "c")
 
 def capabilities() -> Capabilities:
     """Three axes and motors, no force sensor."""
-    reads = [Channel("position", "m", axis=axis, minimum=-REACH, maximum=REACH) for axis in range(3)]
+    reads = [Channel("position", "m", axis=axis, minimum=-2.0 * REACH, maximum=2.0 * REACH) for axis in range(3)]
     drives = [
         Channel("motor force", "N", driven=True, axis=axis, minimum=-STRONGEST, maximum=STRONGEST, safe=0.0)
         for axis in range(3)

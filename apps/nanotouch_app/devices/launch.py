@@ -17,8 +17,9 @@ from typing import Self
 from nanotouch.errors import DeviceError
 from nanotouch.touch.scratch import Scratch
 
+from nanotouch_app.devices import calibration
 from nanotouch_app.devices.bridge import PATIENCE, TIMEOUT
-from nanotouch_app.devices.table import Device
+from nanotouch_app.devices.table import Device, named
 
 ENDS, RELEASES = 3.0, 8.0  # a bridge that is asked to, within this [s]
 _numbers = itertools.count(1)
@@ -108,6 +109,14 @@ class Launched:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def of_hand(hand: str) -> Launched:
+    """The bridge of ``DEVICE`` or ``DEVICE:OPTION``, with its calibration where there is one."""
+    name, _, option = hand.partition(":")
+    device = named(name)
+    path = calibration.path_of(device.name)
+    return Launched(device, option, found=path if path.is_file() else None)
 
 
 def _environment() -> dict[str, str]:

@@ -11,6 +11,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from nanotouch.errors import InvalidValue
+from nanotouch.scene import Rig
+from nanotouch.touch.session import settings_for_path
 
 
 class Device(NamedTuple):
@@ -31,29 +33,40 @@ class Device(NamedTuple):
     """between two readings [s]"""
     axes: int
     """1: it leads z alone"""
+    travel: float
+    """how far from where it begins the hand may go [m]"""
+
+    def lead(self, rig: Rig) -> dict[str, float]:
+        """Make it the master of a rig: without a gauge, with its axes, rate, travel and force. The gains with which a
+        hand goes as far as with the master of the rig as it was; its own travel is far more than a hand uses."""
+        alpha_p = float(settings_for_path(rig).gains.alpha_p)
+        rig["master.gauge"], rig["master.axes"] = "no", self.axes
+        rig["master.rate"], rig["master.max_force"] = 1.0 / self.period, self.force
+        rig["master.travel"] = self.travel
+        return {"alpha_p": alpha_p}
 
 
 ROWS = (
     Device(
         "inverse3", "Haply Inverse3", "aiohttp", "browser",
         "Haply's Inverse Service must run: install it from Haply's download page (develop.haply.co), start it, connect "
-        "the device and calibrate it there", 3.0, 1e-3, 3,
+        "the device and calibrate it there", 3.0, 1e-3, 3, 0.4,
     ),
     Device(
         "forcedimension", "Force Dimension", "forcedimension_core", "forcedimension",
         "The maker's SDK 3.16 or newer must be there (www.forcedimension.com/software/sdk; the environment variable "
         "FDSDK names its folder), the device connected and switched on, and yours to open (on Linux a udev rule)",
-        5.0, 1e-3, 3,
+        5.0, 1e-3, 3, 0.5,
     ),
     Device(
         "geomagic", "3D Systems Touch", "pyOpenHaptics", "geomagic",
         "OpenHaptics and the Touch Device Driver must be there (3D Systems' support pages), and the device set up by "
-        "the maker's Touch Setup under this name", 2.0, 1e-3, 3,
+        "the maker's Touch Setup under this name", 2.0, 1e-3, 3, 0.6,
     ),
     Device(
         "wheel", "wheel with force feedback", "evdev", "wheel",
         "Linux shows such a device as /dev/input/event*: connect it, and be allowed to write to it (group input)",
-        5.0, 8e-3, 1,
+        5.0, 8e-3, 1, 2.6,
     ),
 )  # fmt: skip
 DEVICES = {row.name: row for row in ROWS}

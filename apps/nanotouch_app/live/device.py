@@ -100,13 +100,12 @@ def opened(subject: Subject, device: Device | None, mailbox: str, recorded: bool
     """A session that this device leads: without a gauge, its force and rate those of the device."""
     rig = subject.rig.copy()
     rig["master.gauge"] = "no"
-    if device is not None:
-        rig["master.axes"], rig["master.rate"], rig["master.max_force"] = device.axes, 1.0 / device.period, device.force
+    gains: Any = {} if device is None else device.lead(rig)
     width, height = subject.topography.size
     try:
         return nt.Session(
             subject.scene, rig, surface=subject.touched(subject.scene), master=nt.hal.Mailbox(mailbox),
-            path=[(0.5 * width, 0.5 * height)], relative_accuracy=subject.accuracy, recorded=recorded,
+            path=[(0.5 * width, 0.5 * height)], relative_accuracy=subject.accuracy, recorded=recorded, gains=gains,
         )  # fmt: skip
     except DeviceError as error:
         if device is not None:
@@ -146,7 +145,7 @@ def _turns(session: nt.Session, bridge: Launched | None, window: Popen[str] | No
                     print(f"first force on the hand {time.monotonic() - begun:.1f} s after the command", flush=True)
                 if window is None and time.monotonic() > due:
                     due = time.monotonic() + LINE
-                    print(line(frame, session.state), flush=True)
+                    print(line(frame, session), flush=True)
             yield
             _check(session, bridge)
             time.sleep(TURN)
@@ -154,10 +153,11 @@ def _turns(session: nt.Session, bridge: Launched | None, window: Popen[str] | No
             raise Error("the window has died; the session has ended in order")
 
 
-def line(frame: Any, state: str) -> str:
+def line(frame: Any, session: nt.Session) -> str:
     """What is felt, for the terminal."""
     hand, tip = float(frame["motor_force"][2]), float(frame["tip_force"][2])
-    return f"{float(frame['time']):8.1f} s  {state:8} hand {hand:+.2f} N  tip {in_words(tip, 'N', 3)}"
+    why = "" if session.state == "RUN" else f"  ({', '.join(session.reasons)})"
+    return f"{float(frame['time']):8.1f} s  {session.state:8} hand {hand:+.2f} N  tip {in_words(tip, 'N', 3)}{why}"
 
 
 def _keep(session: nt.Session, keeps: Any) -> None:

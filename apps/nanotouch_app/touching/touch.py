@@ -23,10 +23,13 @@ from nanotouch.units import in_words
 from nanotouch_app import view
 from nanotouch_app.common import output, properties, scenes, stop, surfaces
 from nanotouch_app.common.quantity import number, parse_points, parse_quantity, whole_number
+from nanotouch_app.devices import launch
+from nanotouch_app.devices.table import DEVICES
 from nanotouch_app.touching import loop, report, summary
 
 FILES = ("recording.mcap", "summary.json", "time.png", "force_gap.png", "line.png", "view.png")
 MOVING = ("scan", "topography")
+ALONE = ("topography", "approach", "curve")  # modes in which the stage goes by itself
 LONGEST = 600.0  # [s]
 MOST_STEPS = 6_000_000  # 1 GB of memory
 
@@ -59,6 +62,8 @@ def add_parser(subparsers: Any) -> None:
         help=scenes.HELP.format(what="scene, rig and gains") + " (default: silicon in humid air)",
     )
     scenes.add_allow_code(how)
+    how.add_argument("--hand", metavar="DEVICE", help="a haptic device leads the hand in place of the script: "
+                     f"{', '.join(DEVICES)} (docs/devices.md)")  # fmt: skip
     loop.add_options(how)
     how.add_argument("--probe-model", choices=get_args(ProbeModel), default="auto", help="how the cantilever is "
                      "simulated (default: %(default)s)")  # fmt: skip
@@ -76,7 +81,14 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
-    session = _session(args)
+    if args.hand is None:
+        return _run(args, None)
+    with launch.of_hand(args.hand) as bridge:  # ends with the touch
+        return _run(args, bridge)
+
+
+def _run(args: argparse.Namespace, bridge: launch.Launched | None) -> int:
+    session = _session(args, bridge)
     assert session.surface is not None
     topography = session.surface.topography
     duration = None if args.duration is None else _duration(args.duration)
@@ -127,9 +139,21 @@ def _say_before(session: nt.Session, args: argparse.Namespace) -> None:
     """What is known before anything moves: notes of the image, and with ``--verbose`` margins and limits."""
     surface = session.surface
     assert surface is not None
+    if session.is_led:
+        output.say(_led(session))
     print("".join(f"{note if args.verbose else output.in_short(note)}\n" for note in surface.notes), end="")
     if args.verbose:
         output.say(f"surface: {describe(surface.topography)}\n{summary.before(session)}")
+
+
+def _led(session: nt.Session) -> str:
+    """Who leads what, where a device is the master."""
+    alone = session.mode in ALONE
+    is_along = session.mode == "scan" and session.rig.master.axes == 1.0
+    hand = "nothing, for this mode needs no hand" if alone else "z, up and down" if is_along else "the tip, down and up"
+    script = "x and y along the path" if is_along or alone else "nothing"
+    return (f"the master is a device: your hand leads {hand}; the script leads {script}, and pushes nothing. "
+            "--duration says how long")  # fmt: skip
 
 
 def describe(topography: nt.Topography) -> str:
@@ -157,15 +181,22 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], 
     return surface
 
 
-def _session(args: argparse.Namespace) -> nt.Session:
+def _session(args: argparse.Namespace, bridge: launch.Launched | None) -> nt.Session:
     scene, rig, tables = scenes.read(args.scene)
     real = scenes.real_halves(args.scene, args.allow_code)
+    if bridge is not None:
+        if "master" in real:
+            raise InvalidValue(f"{args.scene} names a master ([master]): give it or --hand {args.hand}, not both")
+        gains = bridge.device.lead(rig)
+        real["master"] = nt.hal.Mailbox(bridge.name)
     with output.busy("reading the surface"):
         surface = _surface(args, scene, tables, "slave" in real)
     what: dict[str, Any] = {
         "surface": surface, "mode": args.mode, "path": _path(args), "seed": args.seed,
         "control": args.control, "probe_model": args.probe_model,
     }  # fmt: skip
+    if bridge is not None and "gains" not in tables:
+        what["gains"] = gains
     with output.busy("planning"):
         session = nt.Session(
             scene, rig, settings=_settings(args, tables, scene, rig, what), rate=loop.rate_of(args.rate),

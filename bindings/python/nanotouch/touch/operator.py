@@ -23,6 +23,7 @@ SCAN_FORCE = 0.4  # [N]
 RETRACT_FORCE = 0.3  # [N]
 LIMIT_SHARE = 0.6  # of the force limit, at the hand
 SCAN_TIMES = (10.0, 60.0)  # shortest and longest default scan [s]
+LED_TIME, LED_SETTLE = 30.0, 3.0  # a hand on a device has; before and after the path [s]
 
 
 #: What holds the master beside the force of the script, for ``Rig(hand=...)``: a finger pad whose rest position follows
@@ -113,6 +114,10 @@ class Touch(Protocol):
     def plan(self) -> Plan:
         """What is computed."""
 
+    @property
+    def is_led(self) -> bool:
+        """Whether a device is the master, so that nothing can push the hand."""
+
     def path_heights(self) -> tuple[Floats, Floats]:
         """Distance along the path and height of the surface there [m]."""
 
@@ -128,7 +133,10 @@ def stretched(script: Sequence[Input | Hold], duration: float | None) -> Sequenc
 
 
 def script_for(session: Touch) -> list[Input]:
-    """Approach, press and retract at a point; or approach, follow the path, retract; or follow it at constant force."""
+    """Approach, press and retract at a point; or approach, follow the path, retract; or follow it at constant force.
+    Where a device is the master its hand does all that, and the script leads the tip along the path at the most."""
+    if session.is_led and session.mode not in ("topography", "approach", "curve"):
+        return _led(session)
     if session.mode == "topography":
         return _follow(session)
     if session.mode == "scan":
@@ -136,6 +144,15 @@ def script_for(session: Touch) -> list[Input]:
     if session.mode in ("approach", "curve"):
         return _descend(session)
     return _press(session)
+
+
+def _led(session: Touch) -> list[Input]:
+    """No hand force: stay at the point, or where a device of one axis leads the height, follow the path meanwhile."""
+    x, y = session.path[0]
+    if session.mode != "scan" or session.rig.master.axes != 1.0:
+        return [Input(0.0, x, y, LED_TIME)]
+    along = _along_path(session, 0.0, _slave_speed(session, 0.5 * SCAN_FORCE))
+    return [Input(0.0, x, y, LED_SETTLE), *along, Input(0.0, *session.path[-1], LED_SETTLE)]
 
 
 def _slave_speed(session: Touch, force: float) -> float:

@@ -128,6 +128,8 @@ class Session(Runs, Frozen):
         self._opened_with |= {"mode": mode, "stability_margin": margin if math.isfinite(margin) else None}
         pushed = {"particles": particles, "rod": rod}
         self._opened_with |= {name: asdict(one) for name, one in pushed.items() if one is not None}
+        self.is_led = options.get("master") is not None
+        """a device is the master: its hand leads, and no script pushes it"""
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
         own = options.get("master") or options.get("slave")
