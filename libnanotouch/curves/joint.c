@@ -129,12 +129,15 @@ static void compare(const nt_curve_baseline *baseline, nt_curve_reading *reading
     reading->offset_sigma = sqrt(sigma * sigma + baseline->force_variance);
 }
 
-/* The approach less the middle of what drag can be, where nothing is free. */
-static nt_curve_baseline bound(const nt_curve *curve, double most, const nt_curve_reading *reading)
+/* The approach less the middle of what drag can be, where nothing is free; below it by up to the tail's offset, where
+ * that tail is a line as the approach's and the tip was torn off before: another tether that holds to the end looks the
+ * same as a film or a step of the level. */
+static nt_curve_baseline bound(const nt_curve *curve, double most, double below, const nt_curve_reading *reading)
 {
     const nt_curve_baseline *approach = &reading->approach.baseline;
     const double width = most - curve->least_drag, middle = curve->least_drag + 0.5 * width;
-    return beside(approach, approach->z_mean, -middle, approach->force_variance + width * width / 12.0);
+    const double variance = width * width / 12.0 + below * below;
+    return beside(approach, approach->z_mean, -middle, approach->force_variance + variance);
 }
 
 /* How much the force grew between samples where the lowest point was torn off: no sample shows the last of it. */
@@ -150,16 +153,17 @@ static double growth(const nt_curve_outside *out, const nt_curve_reading *readin
     return 0.0;
 }
 
-static void widen(const nt_curve *curve, double most, double unseen, nt_curve_reading *reading)
+static void widen(const nt_curve *curve, double most, double offset_below, double unseen, nt_curve_reading *reading)
 {
     nt_curve_measured *dip = &reading->retract.dip;
     const double width = most - curve->least_drag, offset = reading->offset;
     double below = 0.0, above = 0.0;
     reading->pull_off_sigma = dip->sigma;
     if (reading->support == NT_CURVE_BOUND) {
-        below = fmin(0.5 * width, dip->value);
+        const double open = width * width / 12.0 + offset_below * offset_below;
+        below = fmin(fmax(0.5 * width, offset_below), dip->value);
         above = 0.5 * width;
-        reading->pull_off_sigma = sqrt(fmax(dip->sigma * dip->sigma - width * width / 12.0, 0.0));
+        reading->pull_off_sigma = sqrt(fmax(dip->sigma * dip->sigma - open, 0.0));
     } else if (offset > curve->least_drag + contradiction * reading->offset_sigma || reading->retract.dips) {
         above = fmax(offset - curve->least_drag, 0.0);
         dip->sigma = hypotenuse(dip->sigma, above / sqrt(12.0));
@@ -269,9 +273,11 @@ static void join(const nt_curve *curve, const nt_curve_outside *out, double *roo
     compare(&baseline, reading);
     const double offset = fmax(reading->offset, curve->least_drag); /* all of it drag, where that is unknown */
     const double most = curve->most_drag > 0.0 ? curve->most_drag : offset;
+    double below = 0.0;
     if ((!own && count < NT_CURVE_FEWEST) || reading->offset > most + contradiction * reading->offset_sigma) {
         reading->support = NT_CURVE_BOUND;
-        baseline = bound(curve, most, reading);
+        below = own && reading->ruptures ? fmax(offset - 0.5 * (most + curve->least_drag), 0.0) : 0.0;
+        baseline = bound(curve, most, below, reading);
     }
     for (int i = 0; i < reading->ruptures; i++) {
         const double z = reading->rupture[i].z;
@@ -280,7 +286,7 @@ static void join(const nt_curve *curve, const nt_curve_outside *out, double *roo
     if (!own || reading->support == NT_CURVE_BOUND) /* another baseline than it was read with */
         nt_curve_read_events(&curve->retract, &baseline, retract->noise, room - 2 * n, retract);
     refine_dip(out, reading);
-    widen(curve, most, growth(out, reading), reading);
+    widen(curve, most, below, growth(out, reading), reading);
 }
 
 void nt_curve_join(const nt_curve *curve, const nt_curve_bend_doubts *doubts, nt_curve_outside *out, double *room,

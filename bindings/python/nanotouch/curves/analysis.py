@@ -177,7 +177,7 @@ def _interval_notes(read: Mapping[str, Any], depth: float) -> list[str]:
     if read["support"] == _BOUND:
         notes.append(
             f"the retraction ends {offset * 1e9:.3g} nN below the approach, more than drag explains: nothing of it is "
-            f"free; below the approach {between}"
+            f"free, or a film or a step offsets it; below the approach {between}"
         )
     elif most - depth > 5.0 * sigma and most > 1.2 * depth:
         notes.append(
