@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import InvalidValue, MissingExtra
 
 pytest.importorskip("nanotouch._fit", reason="built without Ceres")
 
@@ -80,6 +81,40 @@ def test_pictures_are_written(tmp_path: Path) -> None:
     nt.fit.draw(curve, result, save=tmp_path / "fit.png")
     nt.fit.stability(curve, "jkr", radius=RADIUS, windows=3).draw(save=tmp_path / "stability.png")
     assert all((tmp_path / name).stat().st_size > 10_000 for name in ("fit.png", "stability.png"))
+
+
+def test_a_result_is_drawn_over_its_indentation() -> None:
+    """Force over indentation beside force over position; without noise the points lie on the law."""
+    pytest.importorskip("matplotlib")
+    curve = curve_of("hertz", noise=0.0)
+    result = nt.fit.fit_curve(curve, "hertz", radius=RADIUS)
+    position, indentation, _ = result.plot().axes
+    assert "base" in position.get_xlabel()
+    points, law = indentation.get_lines()[:2]
+    depth = np.asarray(points.get_xdata()) * 1e-9  # nm
+    assert depth.max() == pytest.approx(result.indentation.max(), rel=1e-6)
+    force = 4.0 / 3.0 * MODULUS * np.sqrt(RADIUS) * np.clip(depth, 0.0, None) ** 1.5
+    np.testing.assert_allclose(np.asarray(points.get_ydata()) * 1e-9, force, atol=1e-3 * force.max())
+    np.testing.assert_allclose(law.get_xdata(), points.get_xdata(), atol=1e-3 * depth.max() * 1e9)
+
+
+def test_a_result_in_a_line_and_as_a_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    pandas = pytest.importorskip("pandas")
+    result = nt.fit.fit_curve(curve_of("jkr"), "jkr", radius=RADIUS, poisson_ratio=0.3)
+    said = repr(result)
+    assert "\n" not in said
+    assert len(said) < 250
+    for part in ("jkr", result.status, f"youngs_modulus {result.show('youngs_modulus')}"):
+        assert part in said
+    table = result.to_pandas()
+    assert isinstance(table, pandas.DataFrame)
+    assert list(table.index) == list(result.values)
+    row = table.loc["youngs_modulus"]
+    assert (row["value"], row["unit"]) == (result.values["youngs_modulus"], "Pa")
+    assert (row["low"], row["high"]) == result.interval["youngs_modulus"]
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(MissingExtra, match=r"pandas is not installed .*notebook"):
+        result.to_pandas()
 
 
 def test_window_in_indentation() -> None:

@@ -228,7 +228,7 @@ def test_a_map_is_the_same_with_the_guard(tmp_path: Path) -> None:
          "reason": (("y", "x"), np.array([["", "too short"]], object))},
         {"x": ("x", [1e-9, 2e-9])}, {"model": "hertz", "curves": 2},
     )  # fmt: skip
-    maps.write(data, tmp_path / "map.nc")
+    maps.write(tmp_path / "map.nc", data)
     xarray.testing.assert_identical(maps.read(tmp_path / "map.nc", untrusted=True), maps.read(tmp_path / "map.nc"))
 
 

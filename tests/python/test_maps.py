@@ -210,7 +210,7 @@ def test_what_is_written_reads_back_with_all_that_it_was_made_of(tmp_path: Path)
     source = volume(3)
     source.values[0, 0, 3] = np.nan
     data = maps.fit(source, "jkr", radius=20e-9)
-    again = maps.read(maps.write(data, tmp_path / "map.nc"))
+    again = maps.read(maps.write(tmp_path / "map.nc", data))
     assert again.equals(data)
     assert again.effective_modulus.attrs["units"] == "Pa"
     assert json.loads(again.attrs["settings"])["radius"] == 20e-9
@@ -301,6 +301,8 @@ def test_bounds_where_a_stiff_contact_does_not_determine_the_modulus() -> None:
         force = source.values[y, x].max()
         softest = (1.0 / (1.0 / slope - 2.0)) ** 1.5 / (6.0 * 20e-9 * force) ** 0.5
         assert 0.5 < least[y, x] / softest < 2.0
+    pytest.importorskip("matplotlib")
+    assert f"{np.isfinite(least).sum()} a lower bound (^)" in maps.draw(data).axes[0].get_title()
     exact = maps.fit(source, "dmt", radius=20e-9, uncertainties=nt.fit.Uncertainties(sensitivity=0.0))
     assert np.isnan(exact["effective_modulus_least"].values).all()
 

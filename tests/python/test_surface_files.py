@@ -262,7 +262,7 @@ def test_a_fitted_map_gives_what_it_has_found(tmp_path: Path) -> None:
     data = maps.fit(volume(6), model="maugis", **SETTINGS)
     data["effective_modulus"].values[2, 3] = np.nan
     file = tmp_path / "map.nc"
-    maps.write(data, file)
+    maps.write(file, data)
     with pytest.raises(ReadError, match="1 of 36 pixels of 'effective_modulus' have no effective_modulus"):
         read_values(file, "effective_modulus", "effective_modulus", pixel_size=1e-8)
     found = read_values(file, "effective_modulus", "effective_modulus", pixel_size=1e-8, fill_by="neighbours")

@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
             _remove(blocks)
         data = _fitted(args, blocks)
         with stop.keeping(f"the fits are kept, --out {out} goes on from them:", blocks):
-            awaited(lambda: maps.write(data, out / "map.nc"))
+            awaited(lambda: maps.write(out / "map.nc", data))
             maps.draw(data, save=out / "map.png")
         summary = summarise(data)
         output.write_json(out / "map.json", summary)

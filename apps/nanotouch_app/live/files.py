@@ -22,7 +22,6 @@ from nanotouch_app.live.subject import PRESETS, Subject, of_preset
 MOST_PIXELS = 1024  # of an image that is touched, to a side
 EXTENT = 25.0  # of the relief that is made for a scene, in radii of the tip
 ROUGHNESS = 0.01  # its height over the same
-CURVE_TIP = 20e-9  # [m]; assumed, and told, where nobody gives the radius
 
 
 def check_named(what: str) -> None:
@@ -138,18 +137,18 @@ def of_map(path: Path) -> Subject:
 
 
 def of_curve(path: Path, radius: float | None = None, spring_constant: float | None = None) -> Subject:
-    """A force curve, the first one of a map: its fit by Maugis-Dugdale is the scene, its lever the lever."""
+    """A force curve, the first one of a map: its fit, by the law that
+    ``nanotouch fit`` takes, is the scene, its lever the lever."""
     return of_fit(curves.read(path, spring_constant=spring_constant)[0], path.stem, radius)
 
 
 def of_fit(curve: nt.ForceCurve, name: str, radius: float | None = None) -> Subject:
     """The same of a curve that has been read; ``radius`` [m] of its tip."""
-    tip = CURVE_TIP if radius is None else radius
-    result = fitting.fit_curve(curve, "maugis", radius=tip)
+    result = fitting.fit_curve(curve, "auto", radius=radius)
     (scene, felt), rig = measured.scene_of(result), nt.Rig()
     rig["probe.spring_constant"] = result.spring_constant
     bent = float(scene.range.maximum_load) / result.spring_constant  # its sensor has seen that
     rig["probe.sensitivity"] = max(float(rig.probe.sensitivity), measured.ROOM * bent / float(rig.probe.range))
-    assumed = "" if radius is not None else f"; R = {in_words(tip, 'm', 3)} is assumed (--radius)"
+    assumed = f"; R = {in_words(result.radius, 'm', 3)} is assumed (--radius)" if result.assumed_tip else ""
     return Subject(name, name, scene, rig, _made_for(scene, name), f"{felt}{assumed}.",
                    "Touch what you have measured.")  # fmt: skip

@@ -26,12 +26,14 @@ NO_GROUP = "no group"  # of a file that no line of a table matches
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
 #: what is summed up: column of the table, its name in words, its unit
 QUANTITIES = {
-    "modulus [Pa]": ("modulus", "Pa"),
+    "E [Pa]": ("E", "Pa"),
+    "E* [Pa]": ("E*", "Pa"),
     "pull_off_force [N]": ("pull-off force", "N"),
     "separation_work [J]": ("work of separation", "J"),
     "exponent": ("exponent beta", ""),
     "relaxation_time [s]": ("relaxation time", "s"),
 }
+_MODULI = ("E [Pa]", "E* [Pa]")  # one of both, as the Poisson ratio is known or not
 _OF_SOME = ("exponent", "relaxation_time [s]")  # models: shown where a curve has it
 _FEWEST = 8  # values, to judge a distribution by
 _CRITICAL = 0.752  # of Anderson and Darling's A^2 at 5 %, mean and variance estimated (Stephens 1986)
@@ -133,7 +135,8 @@ def spreads(rows: Iterable[Mapping[str, Any]]) -> list[Spread]:
         if row["status"] not in ("failed", "excluded"):
             kept.setdefault(row.get("group", ""), []).append(row)
     there = {key for members in kept.values() for row in members for key in _OF_SOME if row.get(key, "") != ""}
-    asked = [quantity for quantity in QUANTITIES if quantity not in _OF_SOME or quantity in there]
+    there |= {key for members in kept.values() for row in members for key in _MODULI if key in row}
+    asked = [quantity for quantity in QUANTITIES if quantity not in (*_MODULI, *_OF_SOME) or quantity in there]
     return [_spread(group, quantity, members) for group, members in kept.items() for quantity in asked]
 
 
@@ -158,7 +161,7 @@ def _spread(group: str, quantity: str, rows: Sequence[Mapping[str, Any]]) -> Spr
 def _value(row: Mapping[str, Any], quantity: str) -> float:
     """NaN where a curve does not determine it: a misfit's modulus is none, nor is the force of what is no curve."""
     if float(row.get("rating") or 0.0) < REJECTED or (
-        quantity.startswith(("modulus", *_OF_SOME)) and row["status"] in ("misfit", "not converged")
+        quantity in (*_MODULI, *_OF_SOME) and row["status"] in ("misfit", "not converged")
     ):
         return np.nan
     value = row.get(quantity, np.nan)

@@ -25,6 +25,7 @@ from ..fit.show import between, with_sigma
 from ..units import engineering
 from .groups import QUANTITIES, Spread
 from .methods import methods, modulus_meant
+from .table import modulus_of
 
 if TYPE_CHECKING:
     from .files import Summary
@@ -184,9 +185,10 @@ def _range(row: Mapping[str, Any], low: str, high: str, unit: str) -> str:
 
 
 def _modulus(row: Mapping[str, Any]) -> str:
-    ends = _range(row, "modulus low [Pa]", "modulus high [Pa]", "Pa")
-    value = _shown(row, "modulus [Pa]", "Pa")
-    return f"{value}, {ends}" if value and ends else value or ends
+    symbol = modulus_of(row)
+    ends = _range(row, f"{symbol} low [Pa]", f"{symbol} high [Pa]", "Pa")
+    value = _shown(row, f"{symbol} [Pa]", "Pa")
+    return f"{symbol} {f'{value}, {ends}' if value and ends else value or ends}" if value or ends else ""
 
 
 def _force(row: Mapping[str, Any]) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,13 @@ from .sidecar import Decision
 
 Row = dict[str, Any]
 
-#: the short table
+#: what the modulus in a table is: E of the sample where its Poisson ratio was given, else E*
+MODULI = {"youngs_modulus": "E", "effective_modulus": "E*"}
+#: the short table, with the columns of E or of E*
 SHORT = (
-    "file", "curve", "group", "status", "reason", "model", "rating", "modulus [Pa]", "modulus low [Pa]",
-    "modulus high [Pa]", "pull_off_force [N]", "pull_off_force sigma [N]", "work_of_adhesion low [J/m^2]",
-    "work_of_adhesion high [J/m^2]", "separation_work [J]",
+    "file", "curve", "group", "status", "reason", "model", "rating", "E [Pa]", "E low [Pa]", "E high [Pa]",
+    "E* [Pa]", "E* low [Pa]", "E* high [Pa]", "pull_off_force [N]", "pull_off_force sigma [N]",
+    "work_of_adhesion low [J/m^2]", "work_of_adhesion high [J/m^2]", "separation_work [J]",
 )  # fmt: skip
 #: besides, where a model over time was fitted
 OVER_TIME = ("exponent", "exponent low", "exponent high", "relaxation_time [s]", "relaxation_time sigma [s]")
@@ -68,7 +71,7 @@ def by_hand(decision: Decision) -> dict[str, Any]:
 def write(path: Path, rows: list[Row], *, long: bool) -> None:
     """As CSV, whole or not at all."""
     every = dict.fromkeys(key for row in rows for key in row)
-    names = list(every) if long else [*SHORT, *(name for name in OVER_TIME if name in every)]
+    names = list(every) if long else _short(every)
     # file names may hold bytes that are no UTF-8
     with replacing(path) as part, part.open("w", encoding="utf-8", errors="backslashreplace", newline="") as stream:
         writer = csv.DictWriter(stream, names, restval="", extrasaction="ignore")
@@ -76,9 +79,22 @@ def write(path: Path, rows: list[Row], *, long: bool) -> None:
         writer.writerows(rows)
 
 
+def _short(every: dict[str, None]) -> list[str]:
+    """The fifteen columns, and those of models over time."""
+    other = tuple(f"{symbol} " for symbol in MODULI.values() if f"{symbol} [Pa]" not in every)
+    other = other if len(other) < len(MODULI) else ("E ",)
+    names = [name for name in SHORT if not name.startswith(other)]
+    return [*names, *(name for name in OVER_TIME if name in every)]
+
+
+def modulus_of(row: Mapping[str, Any]) -> str:
+    """What the modulus of a row is: E or E*."""
+    return next((symbol for symbol in MODULI.values() if f"{symbol} [Pa]" in row), MODULI["effective_modulus"])
+
+
 def _answered(result: FitResult) -> Row:
     """The numbers of the answer; a bound that does not exist is infinite or 0."""
-    answer = result.answer
+    answer, symbol = result.answer, MODULI[result.answer.quantity]
     force, low, high = answer.pull_off_force
     work, sigma = answer.separation_work
     value, least, most = answer.modulus
@@ -87,8 +103,8 @@ def _answered(result: FitResult) -> Row:
         "pull_off_force high [N]": high, "pull_off_force sigma [N]": answer.pull_off_sigma,
         "work_of_adhesion low [J/m^2]": answer.work_of_adhesion[0],
         "work_of_adhesion high [J/m^2]": answer.work_of_adhesion[1], "separation_work [J]": work,
-        "separation_work sigma [J]": sigma, "modulus [Pa]": value, "modulus low [Pa]": least,
-        "modulus high [Pa]": most,
+        "separation_work sigma [J]": sigma, f"{symbol} [Pa]": value, f"{symbol} low [Pa]": least,
+        f"{symbol} high [Pa]": most,
     }  # fmt: skip
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -40,8 +40,8 @@ class Answer(NamedTuple):
     separation_work : (float, float)
         Of pulling off, its standard uncertainty [J].
     modulus : (float, float, float)
-        Value, least and most (95 %) [Pa]: E of the sample if its Poisson ratio was given, else E*. The value is NaN
-        where the curve sets bounds alone, all are NaN where it sets none.
+        Value, least and most (95 %) [Pa], of `quantity`. The value is NaN where the curve sets bounds alone, all are
+        NaN where it sets none.
     lines : tuple of (str, str)
         All that in words.
     """
@@ -55,6 +55,8 @@ class Answer(NamedTuple):
     lines: tuple[tuple[str, str], ...]
     pull_off_sigma: float = np.nan
     """standard uncertainty of the pull-off force, the calibration's in it [N]"""
+    quantity: Literal["youngs_modulus", "effective_modulus"] = "effective_modulus"
+    """which modulus it is: E of the sample if its Poisson ratio was given, else E*"""
 
     def __str__(self) -> str:
         return "\n".join(f"  {name:18} {text}" for name, text in self.lines)
@@ -72,6 +74,7 @@ class Answer(NamedTuple):
             "work_times_radius_N": plain(self.work_times_radius),
             "separation_work_J": plain(self.separation_work),
             "modulus_Pa": plain(self.modulus),
+            "modulus_is": self.quantity,
             "words": dict(self.lines),
         }
 
@@ -96,7 +99,8 @@ def answer_of(result: FitResult) -> Answer:
     said += _relaxation(result)
     if result.choice:
         lines.append(("law", result.choice))
-    return Answer(found.kind, (force, low, high), work, product, separation, modulus, (*lines, *said), sigma)
+    quantity = _quantity_of(result)
+    return Answer(found.kind, (force, low, high), work, product, separation, modulus, (*lines, *said), sigma, quantity)
 
 
 def _force(result: FitResult) -> tuple[float, float, float, float]:
@@ -197,11 +201,15 @@ def _relaxation(result: FitResult) -> list[tuple[str, str]]:
     return [("relaxation", f"E* at rest {result.show('effective_modulus')}; of E* {', '.join(arms)}")]
 
 
+def _quantity_of(result: FitResult) -> Literal["youngs_modulus", "effective_modulus"]:
+    return "youngs_modulus" if "youngs_modulus" in result.values else "effective_modulus"
+
+
 def _modulus(result: FitResult) -> tuple[tuple[float, float, float], list[tuple[str, str]]]:
     """The modulus in words: E of the sample or E*; without the tip's size as a product with it."""
     if "effective_modulus" not in result.values:
         return (np.nan, np.nan, np.nan), []
-    key = "youngs_modulus" if "youngs_modulus" in result.values else "effective_modulus"
+    key = _quantity_of(result)
     title = "E" if key == "youngs_modulus" else "E*"
     value, (low, high) = result.values[key], result.interval[key]
     if result.determined(key) is False:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nanotouch._io.drawing import BLUE, GREEN, VERMILION, new_figure, plain, saved
-from nanotouch.curves import ForceCurve, Segment
+from nanotouch.curves import ForceCurve
 from nanotouch.units import engineering, in_words
 
 from .models import Floats, is_sharp
@@ -26,22 +26,27 @@ def draw(curve: ForceCurve, result: FitResult, save: str | os.PathLike[str] | No
     matplotlib.figure.Figure
         Also written to `save`, whole or not at all.
     """
+    return plot(result, save, title=f"{curve.name}, curve {curve.meta.get('enum', 0)}: {result.title}")
+
+
+def plot(result: FitResult, save: str | os.PathLike[str] | None = None, *, title: str = "") -> Any:
+    """The same of the result alone, which holds its curve: force over position, and over indentation with the law."""
     figure = new_figure(12.0, 5.5)
     grid = figure.add_gridspec(3, 2, width_ratios=(1.0, 1.0))
-    _whole(figure.add_subplot(grid[:, 0]), curve, result)
+    _whole(figure.add_subplot(grid[:, 0]), result)
     fitted = figure.add_subplot(grid[:2, 1])
     _fitted(fitted, result)
     _residuals(figure.add_subplot(grid[2, 1], sharex=fitted), result)
-    figure.suptitle(plain(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {result.title}"))
+    figure.suptitle(plain(title or f"{result.name}: {result.title}"))
     return saved(figure, save, dpi=130)
 
 
-def _whole(panel: Any, curve: ForceCurve, result: FitResult) -> None:
-    branches = [("approach", curve.approach, BLUE), ("retract", curve.retract, VERMILION)]
+def _whole(panel: Any, result: FitResult) -> None:
     shown: list[tuple[str, Floats, Floats, str]] = []
-    for role, segment, colour in branches:
-        if segment is not None and role in result.report.baselines:
-            shown.append((role, segment.z, _level(segment, result, role), colour))
+    for role, colour in (("approach", BLUE), ("retract", VERMILION)):
+        if role in result.report.branches:
+            branch = result.report.branches[role]
+            shown.append((role, branch.z, branch.force, colour))
     wide, scale_z = engineering("m", np.concatenate([z for _, z, _, _ in shown]))
     strong, scale_f = engineering("N", np.concatenate([force for _, _, force, _ in shown]))
     for role, z, force, colour in shown:
@@ -66,30 +71,29 @@ def _whole(panel: Any, curve: ForceCurve, result: FitResult) -> None:
     panel.legend(loc="best", fontsize=8)
 
 
-def _level(segment: Segment, result: FitResult, role: str) -> Floats:
-    assert segment.force is not None
-    return segment.force - result.report.baselines[role].at(segment.z)
+def _indentation(result: FitResult) -> Floats:
+    """Of the points as they were measured [m]: at the same position of the base the residual bends the lever, too."""
+    gain = result.values.get("sensitivity", 1.0) / result.spring_constant
+    return np.asarray(result.indentation - gain * result.residuals)
 
 
 def _fitted(panel: Any, result: FitResult) -> None:
-    travel = result.z - result.values["contact_point"]
-    scale_z = engineering("m", travel)[1]
+    depth, scale_z = _indentation(result), engineering("m", result.indentation)[1]
     strong, scale_f = engineering("N", result.force)
     for part, colour, label in _parts(result):
-        panel.plot(
-            travel[part] * scale_z, result.force[part] * scale_f, ".", color=colour, ms=3, alpha=0.6, label=label
-        )
-    panel.plot(travel * scale_z, result.fitted * scale_f, color="black", lw=1.2, label=result.title)
+        panel.plot(depth[part] * scale_z, result.force[part] * scale_f, ".", color=colour, ms=3, alpha=0.6, label=label)
+    panel.plot(result.indentation * scale_z, result.fitted * scale_f, color="black", lw=1.2, label=result.title)
     panel.axhline(0.0, color="0.4", lw=0.8, ls="--")
     panel.axvline(0.0, color=GREEN, lw=1.0, ls=":")
-    panel.text(0.97, 0.95, _box(result), transform=panel.transAxes, ha="right", va="top", fontsize=8,
+    panel.text(0.03, 0.95, _box(result), transform=panel.transAxes, ha="left", va="top", fontsize=8,
                bbox={"facecolor": "white", "edgecolor": "0.7", "alpha": 0.9})  # fmt: skip
     panel.set_ylabel(f"force $F$ ({strong})")
     panel.tick_params(labelbottom=False)
-    panel.legend(loc="center right", fontsize=8)
+    panel.legend(loc="center left", fontsize=8)
     branch = "retraction" if result.branch == "retract" else result.branch
     if result.time is not None:  # of a long free part little is seen
-        panel.set_xlim(1.1 * travel.min() * scale_z, -_FREE * travel.min() * scale_z)
+        deepest = float(result.indentation.max()) * scale_z
+        panel.set_xlim(-_FREE * deepest, 1.1 * deepest)
     panel.set_title(f"the {result.z.size} points of the {branch} that were fitted", fontsize=9)
 
 
@@ -102,14 +106,13 @@ def _parts(result: FitResult) -> list[tuple[slice, str, str]]:
 
 
 def _residuals(panel: Any, result: FitResult) -> None:
-    travel = result.z - result.values["contact_point"]
-    wide, scale_z = engineering("m", travel)
+    wide, scale_z = engineering("m", result.indentation)
     weak, scale_f = engineering("N", result.residuals)
-    panel.plot(travel * scale_z, result.residuals * scale_f, ".", color="0.35", ms=3)
+    panel.plot(result.indentation * scale_z, result.residuals * scale_f, ".", color="0.35", ms=3)
     panel.axhline(0.0, color="black", lw=0.8)
     noise = result.report.noise * scale_f
     panel.axhspan(-noise, noise, color="0.85", zorder=0, label="± noise")
-    panel.set_xlabel(f"height of the base over first touch ({wide})")
+    panel.set_xlabel(rf"indentation $\delta$ ({wide})")
     panel.set_ylabel(f"residual ({weak})")
     panel.legend(loc="best", fontsize=8)
 

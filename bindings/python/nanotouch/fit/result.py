@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from nanotouch._io.words import times
 from nanotouch.curves import CurveReport
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import InvalidValue, require
 from nanotouch.rheology import Rheology
 from nanotouch.scene import Scene
 
@@ -29,10 +30,11 @@ Status = Literal["ok", "undetermined", "misfit", "not converged"]
 MISFIT = 3.0  # residual over noise from where the model is said not to describe the curve
 GOOD = 4.5  # NT_FIT_GOOD
 REJECTED = 1.0  # rating below which nothing is left of a curve, noise or not
+SHOWN = ("youngs_modulus", "effective_modulus", "work_of_adhesion", "exponent")  # in a line
 _PLACES = ("contact_point", "force_offset", "force_tilt", "sensitivity")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FitResult:
     """What a fit found; SI throughout.
 
@@ -224,6 +226,33 @@ class FitResult:
     def answer(self) -> Answer:
         """What was asked, first: pull-off, work of adhesion where it follows, modulus or its bound."""
         return answer_of(self)
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame with a row for each parameter: ``value``, ``sigma``, its statistical part and the
+        calibration's, ``low`` and ``high`` of the 95 % interval, ``unit``, ``determined`` (None where it was held)."""
+        pandas = require("pandas", "notebook")
+        rows = {
+            key: {
+                "value": value, "sigma": self.sigma[key], "sigma_statistical": self.sigma_statistical[key],
+                "sigma_calibration": self.sigma_calibration[key], "low": self.interval[key][0],
+                "high": self.interval[key][1], "unit": self.units[key], "determined": self.determined(key),
+            }
+            for key, value in self.values.items()
+        }  # fmt: skip
+        return pandas.DataFrame.from_dict(rows, orient="index").rename_axis("parameter")
+
+    def plot(self, save: str | os.PathLike[str] | None = None) -> Any:
+        """Draw it as :func:`nanotouch.fit.draw` does: a matplotlib Figure, also written to `save`."""
+        from .picture import plot
+
+        return plot(self, save)
+
+    def __repr__(self) -> str:
+        asked = [key for key in SHOWN if key in self.values] or list(self.values)[:1]
+        if "youngs_modulus" in asked:
+            asked.remove("effective_modulus")
+        said = ", ".join(f"{key} {self.show(key)}" for key in asked)
+        return f"<FitResult {self.name}: {self.model}, {self.branch}, {self.status}; {said}>"
 
     def __str__(self) -> str:
         return as_text(self._page())

@@ -3,7 +3,7 @@
 
 >>> import nanotouch as nt
 >>> data = nt.maps.fit("map.jpk-force-map", model="hertz", radius=20e-9, resume="map.blocks")    # doctest: +SKIP
->>> nt.maps.write(data, "map.nc"); nt.maps.draw(data, save="map.png")                            # doctest: +SKIP
+>>> nt.maps.write("map.nc", data); nt.maps.draw(data, save="map.png")                            # doctest: +SKIP
 
 >>> scene = nt.maps.to_scene(data)                                                   # doctest: +SKIP
 >>> nt.Session(scene, surface=nt.maps.to_surface(data, scene, fill_by="median")).run()   # doctest: +SKIP

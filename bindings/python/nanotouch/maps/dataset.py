@@ -17,7 +17,7 @@ from .._io import worker
 from .._io.files import checked_path, guarded, refuse_traps
 from .._io.readers import head_of
 from .._io.writing import replacing
-from ..errors import ReadError, require
+from ..errors import InvalidValue, ReadError, require
 from .block import MEASURED, PLAIN, flag_names, status_names
 from .settings import Settings
 from .store import Columns
@@ -79,8 +79,10 @@ def assemble(volume: Volume, settings: Settings, table: Columns, made_of: dict[s
     return data
 
 
-def write(data: Any, path: str | os.PathLike[str]) -> Path:
-    """Write a Dataset as HDF5 that netCDF tools open, whole or not at all."""
+def write(path: str | os.PathLike[str], data: Any) -> Path:
+    """Write a Dataset as HDF5 that netCDF tools open, whole or not at all; the path first, as in all that writes."""
+    if not isinstance(path, str | os.PathLike):
+        raise InvalidValue(f"path: a {type(path).__name__} is none; maps.write(path, data)")
     require("h5netcdf", "maps")
     with replacing(path) as part:
         data.to_netcdf(part, engine="h5netcdf")

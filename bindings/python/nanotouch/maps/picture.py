@@ -37,8 +37,8 @@ _INNER = (2.0, 98.0)  # percentiles that the colours span, so that a few bad cur
 def draw(data: Any, names: tuple[str, ...] | None = None, save: str | os.PathLike[str] | None = None) -> Any:
     """Draw variables of a map and, last, the state of each curve; by default modulus, adhesion and height.
 
-    A value that its curve does not determine is crossed and does not stretch the colours, or a bound with a triangle;
-    without a result it is grey.
+    A value that its curve does not determine is crossed and does not stretch the colours, or is a lower bound, with a
+    triangle; without a result it is grey.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def _quantity(figure: Any, panel: Any, data: Any, name: str, extent: list[float]
             y, x = np.nonzero(marked)
             panel.scatter(*_centres(data, extent, y, x), s=6, marker=marker, lw=0.6, color="white")
     without = int(np.count_nonzero(~np.isfinite(values)))
-    bounds = f"{int(bounded.sum())} above the colour (^), " if bounded.any() else ""
+    bounds = f"{int(bounded.sum())} a lower bound (^), " if bounded.any() else ""
     panel.set_title(f"{_TITLES.get(name, name.replace('_', ' '))}\n{int(doubtful.sum())} not determined (x), {bounds}"
                     f"{without} without (grey)", fontsize=9)  # fmt: skip
 
