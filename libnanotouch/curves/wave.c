@@ -151,6 +151,29 @@ static int is_evident(const nt_curve_free *free, double before, double after, do
     return gain >= (periods >= seen ? clearer : much_clearer) && bic >= evidence;
 }
 
+/* Whether the outer half is straight by itself: a wave through it that fits no better is the contact that reaches into
+ * the inner half. */
+static int is_straight_outside(const nt_curve_free *free)
+{
+    double n = 0.0, sum[2] = {0.0}, square[2] = {0.0}, product = 0.0, wave = 0.0;
+    for (long i = 0; i < free->count; i++) {
+        if (!(free->x[i] > 0.0))
+            continue;
+        const double row[2] = {free->x[i], free->force[i]};
+        n += 1.0;
+        wave += free->rest[i] * free->rest[i];
+        product += row[0] * row[1];
+        for (int j = 0; j < 2; j++) {
+            sum[j] += row[j];
+            square[j] += row[j] * row[j];
+        }
+    }
+    if (n < 3.0)
+        return 0;
+    const double across = square[0] - sum[0] * sum[0] / n, along = product - sum[0] * sum[1] / n;
+    return square[1] - sum[1] * sum[1] / n - along * along / across < wave;
+}
+
 nt_curve_baseline nt_curve_with_wave(nt_curve_free *free, const nt_curve_baseline *line, int asked)
 {
     const double travel = nt_curve_highest(free->x, free->count) - nt_curve_lowest(free->x, free->count);
@@ -173,6 +196,7 @@ nt_curve_baseline nt_curve_with_wave(nt_curve_free *free, const nt_curve_baselin
         nt_curve_weigh(free->rest, free->count, baseline.scatter, free->weight);
     }
     nt_curve_judge(free, &baseline);
-    const int kept = asked || is_evident(free, line->scatter, baseline.scatter, travel * inverse);
+    const int kept =
+        asked || (is_evident(free, line->scatter, baseline.scatter, travel * inverse) && !is_straight_outside(free));
     return kept ? baseline : *line;
 }

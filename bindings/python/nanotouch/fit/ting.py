@@ -33,6 +33,7 @@ BACKGROUND = ("contact_point", "force_offset", "force_tilt", "drag")
 UNITS = {"contact_point": "m", "force_offset": "N", "force_tilt": "N/m", "drag": "N s/m"}
 DRAG_HEIGHT = "drag_height"
 SMALLEST_NOISE = 1e-15  # N
+_GAP, _STEPS = 0.05, 10.0  # of the time that is recorded, and of its steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +48,10 @@ class Track:
         Points whose force is fitted; the others are on the path alone.
     starts : list of int
         First point of each segment.
+    drift : float
+        Of the force, that was taken off and is worth a note [N/s].
+    gap : float
+        Time before the retraction in which nothing is recorded [s]; then the retraction is not fitted.
     """
 
     time: Floats
@@ -54,6 +59,8 @@ class Track:
     force: Floats
     fitted: NDArray[np.bool_]
     starts: list[int]
+    drift: float = 0.0
+    gap: float = 0.0
 
     def path(self, extension: ModuleType, factor: float = 1.0) -> Any:
         """For the C library, forces multiplied by a factor."""
@@ -162,9 +169,9 @@ def track_of(curve: ForceCurve, report: CurveReport, *, approach_only: bool, win
     if np.count_nonzero(kept) < max(_FEWEST, 0.9 * time.size):
         raise InvalidValue(f"{curve.name}: its times do not increase")
     fitted = np.ones(time.size, dtype=bool)
-    adheres = "retract" in report.branches and report.branches["retract"].dips
     roles = np.array([part.role for part in parts])[number]
-    if adheres:
+    gap = _gap(time, roles)
+    if adheres(report) or gap > 0.0:
         fitted &= roles != "retract"
     if window is not None:
         fitted &= (force >= window[0]) & (force <= window[1])
@@ -172,7 +179,21 @@ def track_of(curve: ForceCurve, report: CurveReport, *, approach_only: bool, win
     if np.count_nonzero(fitted) < _FEWEST:
         raise InvalidValue(f"{curve.name}: {np.count_nonzero(fitted)} points are left to fit; at least {_FEWEST}")
     starts = [int(i) for i in np.flatnonzero(np.diff(number, prepend=-1))]
-    return Track(time, -z, force, fitted, starts)
+    return Track(time, -z, force, fitted, starts, gap=gap)
+
+
+def adheres(report: CurveReport) -> bool:
+    """Whether the retraction surely goes below the free level: what flows returns to it from below the approach."""
+    return "retract" in report.branches and report.branches["retract"].dips and report.pull_off_interval[0] > 0.0
+
+
+def _gap(time: Floats, roles: NDArray[np.str_]) -> float:
+    """Time before the retraction in which nothing is recorded [s]; 0 where that is short."""
+    first = np.flatnonzero(roles == "retract")
+    if not first.size or first[0] == 0:
+        return 0.0
+    gap = float(time[first[0]] - time[first[0] - 1])
+    return gap if gap > max(_GAP * float(time[-1] - time[0] - gap), _STEPS * float(np.median(np.diff(time)))) else 0.0
 
 
 def noise_of(report: CurveReport) -> float:

@@ -9,10 +9,13 @@ import numpy as np
 
 from nanotouch._io.words import times
 from nanotouch.curves import CurveReport, ForceCurve
+from nanotouch.errors import SolverError
 
+from .drift import without_drift
 from .models import Floats, extension
 from .reporting import Sample, Tip
 from .result import MISFIT, FitResult
+from .rivals import doubt_of, widened
 from .show import newton, with_sigma
 from .ting import (
     BACKGROUND,
@@ -23,6 +26,7 @@ from .ting import (
     Found,
     Law,
     Track,
+    adheres,
     interval_of,
     shifts,
     solve,
@@ -35,6 +39,9 @@ _WRONG = 0.05  # residual over the load from where a model is wrong
 _FREE = (
     0.1  # of the approach: with less out of contact its level and tilt take the place of a contact that began before
 )
+_TOUCHED = 10.0  # of the noise
+_WEAK = 0.02  # arm over E* at rest, below which a curve hardly shows it
+_STEEPEST = 0.99
 _SLOW = 3.0  # a relaxation time beyond the record's length times this is none that it shows
 
 
@@ -63,7 +70,12 @@ def fit_whole(
 ) -> FitResult:
     """Fit, and all that is known about it."""
     _, report, law, track = whole
-    found = solve(extension(), law, track)
+    try:
+        found = solve(extension(), law, track)
+    except SolverError as error:
+        raise SolverError(f"{whole.curve.name}: {error}; {_cause(law, track)}") from error
+    track, found = without_drift(law, track, found)
+    whole = whole._replace(track=track)
     spread = _spread(whole, found, uncertainties)
     identifiable = _identifiable(law, found, track, spread)
     notes = list(report.notes) + _notes(whole, found)
@@ -71,6 +83,8 @@ def fit_whole(
     if sample.poisson_ratio is not None:
         _add_youngs_modulus(sample, spread, uncertainties, notes, assumptions)
     reason, rms = _wrong(law, found, track), found.rms(track)
+    doubt = "" if reason else doubt_of(law, track, found)
+    notes += [f"{doubt}: none of these is a property of the sample"] if doubt else []
     return FitResult(
         model=law.model.name,
         title=law.model.title,
@@ -105,6 +119,7 @@ def fit_whole(
         name=whole.curve.name,
         uncertainties=uncertainties,
         reason=reason,
+        doubt=doubt,
         choice=tip.choice,
         rating=_rating(track, found, law.noise),
         radius_given=tip.radius_given,
@@ -117,12 +132,37 @@ def fit_whole(
 def _wrong(law: Law, found: Found, track: Track) -> str:
     """Why none of the values is a property of the sample, as of all fits; else empty."""
     if not found.raw["converged"]:
-        return "the fit stopped before it converged"
+        return f"the fit stopped before it converged{_open_end(law, found, track)}"
     if found.rms(track) > max(MISFIT * law.noise, _WRONG * float(found.raw["peak"])):
         return "the model does not describe the curve"
     last = track.starts[1] if len(track.starts) > 1 else track.time.size
     free = float(np.mean(found.indentation[:last] <= 0.0))
     return f"only {100.0 * free:.2g} % of the approach is out of contact" if free < _FREE else ""
+
+
+def _cause(law: Law, track: Track) -> str:
+    """Why no law of this kind comes near, as far as the force shows it."""
+    most = float(track.force[track.fitted].max())
+    if most < _TOUCHED * law.noise:
+        return f"the force rises by {newton(most)} over a noise of {newton(law.noise)}: nothing is touched"
+    return f"the force rises to {newton(most)}, in no way that this model knows with this tip and lever"
+
+
+def _open_end(law: Law, found: Found, track: Track) -> str:
+    """Which parameter has no end to which the fit could go: what the curve does not show."""
+    length, step = float(np.ptp(track.time)), float(np.median(np.diff(track.time)))
+    said = []
+    for parameter in law.model.parameters:
+        name, value = parameter.name, found.values[parameter.name]
+        if "time" in name and not step < value < _SLOW * length:
+            said.append(f"{name} of {value:.2g} s in a record of {length:.2g} s")
+        elif "arm" in name and value < _WEAK * found.values["effective_modulus"]:
+            said.append(f"{name} is {value / found.values['effective_modulus']:.1g} of E*")
+        elif name == "exponent" and value > _STEEPEST * parameter.maximum:
+            said.append(f"{name} at its bound {parameter.maximum:g}")
+    if not said:
+        return ""
+    return f": {', '.join(said)}; a kernel with fewer arms, or another, may do"
 
 
 def _not_of_this_law() -> Any:
@@ -210,13 +250,20 @@ def _notes(whole: Whole, found: Found) -> list[str]:
             "part of that"
         )
     elif raw["chi_square"] > 1.5 * raw["bins"] or raw["correlation"] > 1.0:
-        widened = np.sqrt(max(raw["chi_square"] / raw["bins"], 1.0) * raw["correlation"])
-        notes.append(f"neighbouring residuals hang together: sigma is {times(widened)} that of white noise")
+        notes.append(f"neighbouring residuals hang together: sigma is {times(widened(found))} that of white noise")
     if not track.fitted.all():
         left = int(np.count_nonzero(~track.fitted))
-        adheres = "retract" in report.branches and report.branches["retract"].dips
-        why = f"the retraction adheres ({newton(report.pull_off_force)}): it is not fitted" if adheres else "by window"
+        why = "by window"
+        if track.gap > 0.0:
+            why = f"nothing is recorded for {track.gap:.3g} s before the retraction: it is not fitted"
+        elif adheres(report):
+            why = f"the retraction adheres ({newton(report.pull_off_force)}): it is not fitted"
         notes.append(f"{left} points are left out: {why}")
+    if track.drift != 0.0:
+        notes.append(
+            f"a drift of {with_sigma(track.drift, 0.0, 'N/s')} is taken off: the free parts before and after contact "
+            "tilt by as much in time"
+        )
     if report.snap_in_force > 0.0:
         notes.append(f"the approach snaps in by {newton(report.snap_in_force)}: this law knows no adhesion")
     radius = _contact_radius(law, found)
