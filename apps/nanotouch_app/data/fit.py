@@ -104,11 +104,6 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
     )
 
 
-def _persistence(args: argparse.Namespace) -> Any:
-    """Of the chains that ruptures end [m]; None: the usual one."""
-    return args.persistence if args.persistence in (None, "free") else parse_quantity(args.persistence, "m")
-
-
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     if args.stability and args.window is not None:
@@ -136,7 +131,9 @@ def run(args: argparse.Namespace) -> int:
         output.write_json(out / "fit.json", args.answer)
         fitting.draw(curve, result, save=out / "fit.png")
         if result.report.ruptures:
-            write_ruptures(out / "ruptures.csv", curves.chains(curve, result.report, segment_length=_persistence(args)))
+            write_ruptures(
+                out / "ruptures.csv", curves.chains(curve, result.report, segment_length=fit_many.persistence(args))
+            )
         if result.time is not None:
             write_pauses(out / "pauses.csv", fitting.pauses(curve, result))
         if args.stability:

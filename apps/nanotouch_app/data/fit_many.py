@@ -16,6 +16,7 @@ from nanotouch.batch.journal import finished
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app.common import output, stop
+from nanotouch_app.common.quantity import parse_quantity
 
 
 def is_meant(args: argparse.Namespace) -> bool:
@@ -46,6 +47,7 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
         with stop.keeping("the table is kept", out):
             sheets = sheet.draw(summary.pictures, folder, out.stem)
             depths = _stabilities(args, summary, out, reading, knowledge) if args.stability else []
+            depths += _pulls(args, summary, out, reading, knowledge)
     args.answer = {"table": str(out), "fitted": summary.count("ok"), "curves": summary.rows}
     print(summary)
     for found in summary.spreads:
@@ -95,6 +97,31 @@ def _stabilities(
     if found.without:
         print(f"  {len(found.without)} without: {found.without[0][2]}")
     return files
+
+
+def _pulls(
+    args: argparse.Namespace, summary: batch.Summary, out: Path, reading: dict[str, Any], knowledge: dict[str, Any]
+) -> list[Path]:
+    """All ruptures, as a table and histograms, where a curve has several or a persistence length is given."""
+    if args.persistence is None and not any(int(row.get("ruptures") or 0) > 1 for row in summary.rows):
+        return []
+    files = [out.with_name(f"{out.stem}-ruptures.{ending}") for ending in ("csv", "png")]
+    with output.progress_bar("ruptures") as progress:
+        found = awaited(lambda: batch.pulls(
+            summary, segment_length=persistence(args), sidecar=args.sidecar, reading=reading, progress=progress,
+            **knowledge,
+        ))  # fmt: skip
+    found.to_csv(files[0])
+    found.draw(save=files[1])
+    print(f"  {found}")
+    if found.without:
+        print(f"  {len(found.without)} without: {found.without[0][2]}")
+    return files
+
+
+def persistence(args: argparse.Namespace) -> Any:
+    """Of the chains that ruptures end [m]; None: the usual one."""
+    return args.persistence if args.persistence in (None, "free") else parse_quantity(args.persistence, "m")
 
 
 def _tell_without(rows: list[dict[str, Any]], most: int = 20) -> None:

@@ -9,6 +9,7 @@ A killed or repeated run goes on from what is in the journal beside the results:
 
 from .files import WITHOUT, Summary, files_of, fit_files
 from .groups import FOLDER, Spread, spreads
+from .pulls import Pulls, pulls
 from .report import write_report
 from .review import Place, Review
 from .sidecar import Decision, Sidecar
@@ -19,6 +20,7 @@ __all__ = [
     "WITHOUT",
     "Decision",
     "Place",
+    "Pulls",
     "Review",
     "Sidecar",
     "Spread",
@@ -26,6 +28,7 @@ __all__ = [
     "Summary",
     "files_of",
     "fit_files",
+    "pulls",
     "spreads",
     "stabilities",
     "write_report",

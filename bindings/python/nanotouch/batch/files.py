@@ -183,8 +183,8 @@ def _without(files: list[Path], others: tuple[Path, ...]) -> list[Path]:
 def _own(out: Path) -> tuple[Path, ...]:
     """What a run leaves itself, which is no force curve."""
     sheets = out.parent.glob(f"{glob.escape(out.stem)}-[0-9][0-9].png")
-    depths = (out.with_name(f"{out.stem}-stability.{ending}") for ending in ("csv", "png"))
-    return (out, _beside(out, "json"), _beside(out, "journal"), *depths, *sheets)
+    more = (out.with_name(f"{out.stem}-{of}.{end}") for of in ("stability", "ruptures") for end in ("csv", "png"))
+    return (out, _beside(out, "json"), _beside(out, "journal"), *more, *sheets)
 
 
 def _given(
