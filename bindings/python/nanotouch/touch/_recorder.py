@@ -28,6 +28,7 @@ from numpy.typing import ArrayLike
 
 from nanotouch._io.writing import naming, part_of
 from nanotouch.errors import Error, InvalidValue, require
+from nanotouch.touch import _recording_plots
 from nanotouch.touch.columns import COLUMNS, checked
 
 TOPIC = "nanotouch/touch"
@@ -88,6 +89,7 @@ class Writer:
         self._names: tuple[str, ...] = ()
         self._channel = 0
         self._blocks = 0
+        self._plots = _recording_plots.Plots()
         self._last = -math.inf  # time of the last row [s]
         self._ending = ending(KILLED)
         self._is_cut = False
@@ -112,9 +114,13 @@ class Writer:
         if self._blocks % CHUNKS_KEPT == 0:
             self._mcap, self._names = _new_writer(self._file), tuple(block)
             self._register(self._names)
+            if not self._blocks:
+                with self._growing():
+                    self._file.write(_recording_plots.head(self._names))
         data = b"".join(values.tobytes() for values in block.values())
         with self._growing():
             self._mcap.add_message(self._channel, log_time=stamp, data=data, publish_time=stamp, sequence=self._blocks)
+            self._file.write(self._plots.messages(block))
         self._blocks += 1
         self.rows += times.size
         self._last = float(times[-1]) if times.size else self._last

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from nanotouch.errors import ReadError
 from nanotouch.touch._recorder import ENCODING, ROWS
+from nanotouch.touch._recording_plots import NUMBER as PLOTS
 from nanotouch.touch._recording_records import Damage, records
 from nanotouch.touch.columns import COLUMNS
 
@@ -102,7 +103,7 @@ def parts_of(path: Path) -> dict[str, Any]:
                     metadata |= _decoded(record.metadata, losses)
                 elif type(record).__name__ == "Schema" and record.encoding == ENCODING:
                     names = _schema_names(record.data)
-                elif type(record).__name__ == "Message":
+                elif type(record).__name__ == "Message" and record.channel_id != PLOTS:
                     losses.block(record.sequence)
                     blocks.append(record.data)
     except OSError as error:
