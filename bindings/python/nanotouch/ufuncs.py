@@ -63,12 +63,14 @@ def _is_of_use(name: str) -> bool:
     """Hertz and DMT have one branch and one tier, the unstable branch has no table, forces of a gap have no radius."""
     numbers = _NAMES[name]
     if len(numbers) == 2:
-        return numbers[1] != VALUES.index("radius")
+        return bool(numbers[1] != VALUES.index("radius"))
     model, branch, tier, _ = numbers
-    return tier == _TIERS.index("") if _BRANCHES[branch] == "_unstable" and model > 1 else model > 1 or name in _PLAIN
+    is_exact, is_stable = _TIERS[tier] == "", _BRANCHES[branch] == ""
+    if _CONTACTS[model] in ("hertz", "dmt"):
+        return is_exact and is_stable
+    return is_exact or _BRANCHES[branch] != "_unstable"
 
 
-_PLAIN = {f"{law}{value}" for law, value in itertools.product(_CONTACTS[:2], _VALUE_NUMBERS)}
 __all__ = ["VALUES", *filter(_is_of_use, _NAMES)]
 
 
