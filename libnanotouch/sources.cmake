@@ -37,6 +37,7 @@ set(nanotouch_sources_contact
     contact/maugis/bank_contact.c
     contact/maugis/bank_eval.c
     contact/maugis/bank_panels.c
+    contact/maugis/block.c
     contact/maugis/branch.c
     contact/maugis/cells.c
     contact/maugis/equilibrium.c

@@ -97,20 +97,23 @@ static void block_store(const nt_strided *part, const nt_law_block *block)
         nt_strided_store(part, i, (nt_law_value){block->U[i], block->F[i], block->k[i], block->a[i]});
 }
 
-/* Whether the law has a block form on this branch. */
-static int has_blocks(const nt_contact_law *law, nt_branch branch)
+/* Fills the values at the indentations of a block; 0 where it has none of that kind. */
+static int block_fill(const nt_contact_law *law, nt_branch branch, int force_alone, nt_law_block *block)
 {
-    return law->model != NT_MAUGIS && (branch == NT_BRANCH_STABLE || branch == NT_BRANCH_APPROACH);
+    const nt_contact *contact = &law->maugis.contact;
+    if (law->model == NT_JKR && contact->work_of_adhesion > 0.0)
+        return nt_jkr_block(contact, branch, block);
+    if (law->model == NT_MAUGIS && contact->work_of_adhesion > 0.0)
+        return nt_maugis_block(&law->maugis, branch, force_alone, block);
+    closed_block(contact, law->model == NT_DMT ? nt_dmt_pull_off_force(contact) : 0.0, block);
+    return 1;
 }
 
 static nt_status block_eval(const nt_contact_law *law, nt_branch branch, const nt_strided *part)
 {
-    const nt_contact *contact = &law->maugis.contact;
-    nt_law_block block;
+    nt_law_block block = {.U = {0.0}};
     block_load(part, &block);
-    if (law->model != NT_JKR || contact->work_of_adhesion == 0.0)
-        closed_block(contact, law->model == NT_DMT ? nt_dmt_pull_off_force(contact) : 0.0, &block);
-    else if (!nt_jkr_block(contact, branch, &block))
+    if (part->count < NT_BLOCK / 8 || !block_fill(law, branch, !part->U && !part->k && !part->a, &block))
         return one_by_one(law, branch, part);
     const nt_status status = not_finite_mark(&block) ? NT_OK : NT_E_NOT_FINITE;
     block_store(part, &block);
@@ -122,17 +125,16 @@ nt_status nt_contact_law_eval_n(const nt_contact_law *law, nt_branch branch, con
     const nt_contact *contact = &law->maugis.contact;
     const int force_alone = arrays->F && !arrays->U && !arrays->k && !arrays->a;
     const int contiguous = arrays->in_stride == 1 && arrays->out_stride == 1;
-    if (!has_blocks(law, branch))
+    if (branch != NT_BRANCH_STABLE && branch != NT_BRANCH_APPROACH)
         return one_by_one(law, branch, arrays);
-    if (law->model != NT_JKR && force_alone && contiguous) {
+    if ((law->model == NT_HERTZ || law->model == NT_DMT) && force_alone && contiguous) {
         const double adhesion = law->model == NT_DMT ? nt_dmt_pull_off_force(contact) : 0.0;
         return closed_force(contact, adhesion, arrays->in, arrays->F, arrays->count) ? NT_OK : NT_E_NOT_FINITE;
     }
     nt_status first = NT_OK;
     for (long i = 0; i < arrays->count; i += NT_BLOCK) {
         const nt_strided part = part_of(arrays, i, arrays->count - i < NT_BLOCK ? arrays->count - i : NT_BLOCK);
-        const nt_status status =
-            part.count < NT_BLOCK / 8 ? one_by_one(law, branch, &part) : block_eval(law, branch, &part);
+        const nt_status status = block_eval(law, branch, &part);
         first = first == NT_OK ? status : first;
     }
     return first;

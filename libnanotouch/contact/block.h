@@ -16,4 +16,7 @@ typedef struct nt_law_block {
  * beyond what its reduced form can tell from Hertz. What is not finite gives any value. */
 int nt_jkr_block(const nt_contact *contact, nt_branch branch, nt_law_block *block);
 
+/* The same of Maugis-Dugdale, exact; of what stands for U, k and a nothing is known where the load alone is wanted. */
+int nt_maugis_block(const nt_maugis *maugis, nt_branch branch, int load_alone, nt_law_block *block);
+
 #endif

@@ -53,7 +53,7 @@ double nt_maugis_equilibrium_curvature(double lambda, const nt_maugis_equilibriu
 }
 
 typedef struct {
-    double e1, e2, e3;
+    double e1, e3;
 } energy_shape;
 
 static energy_shape energy_shape_at(double y)
@@ -64,24 +64,18 @@ static energy_shape energy_shape_at(double y)
         const double rho = 1.0 / (y + r);
         return (energy_shape){
             .e1 = 0.75 * z * (y - z * t) - 0.5 * z * t + 0.25 * (y + t),
-            .e2 = (1.0 + z) * t - rho * rho * (2.0 * r + y) / 3.0,
             .e3 = (1.0 + z) * t - y - 2.0 / 3.0 * rho * rho * (2.0 * r + y),
         };
     }
-    const double rho = s / (1.0 + r);
     return (energy_shape){
         .e1 = 0.25 * (y * (3.0 * A - 1.0) + s * (1.0 + 2.0 * A - z * A)),
-        .e2 = y * (1.0 + z) * (1.0 - z * A) - rho * rho * (2.0 * r + 1.0) * y / 3.0,
         .e3 = s * (1.0 - A * (1.0 + z) - 2.0 / 3.0 * (2.0 * r + 1.0) / ((1.0 + r) * (1.0 + r))),
     };
 }
 
 double nt_maugis_equilibrium_energy(double lambda, const nt_maugis_equilibrium *point)
 {
-    const energy_shape f = energy_shape_at(point->y);
-    const double a = point->a, b = point->b, a2 = a * a, b2 = b * b;
-    return 0.4 * a2 * a2 * a - 4.0 / 3.0 * lambda * b * a2 * a + 4.0 / 3.0 * lambda * lambda * b2 * b * f.e2 +
-           lambda * b2 * b2 * f.e1 - (a2 + b2);
+    return nt_maugis_energy_of(lambda, point, nt_maugis_functions_at(point->y));
 }
 
 double nt_maugis_equilibrium_energy_slope(double lambda, const nt_maugis_equilibrium *point)

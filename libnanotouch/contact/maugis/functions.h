@@ -77,4 +77,19 @@ static inline nt_maugis_equilibrium nt_maugis_equilibrium_of(double lambda, nt_m
     };
 }
 
+/* Its energy: (energy) in branch.c. `f` is of the same y. */
+static inline double nt_maugis_energy_of(double lambda, const nt_maugis_equilibrium *point, nt_maugis_functions f)
+{
+    const int low = f.y <= 1.0;
+    const double y = f.y, s = f.s, z = f.z, r = f.r, A = f.A, t = 0.5 * f.h3;
+    const double rho = (low ? 1.0 : s) / ((low ? y : 1.0) + r);
+    const double e1 = low ? 0.75 * z * (y - z * t) - 0.5 * z * t + 0.25 * (y + t)
+                          : 0.25 * (y * (3.0 * A - 1.0) + s * (1.0 + 2.0 * A - z * A));
+    const double e2 = low ? (1.0 + z) * t - rho * rho * (2.0 * r + y) / 3.0
+                          : y * (1.0 + z) * (1.0 - z * A) - rho * rho * (2.0 * r + 1.0) * y / 3.0;
+    const double a = point->a, b = point->b, a2 = a * a, b2 = b * b;
+    return 0.4 * a2 * a2 * a - 4.0 / 3.0 * lambda * b * a2 * a + 4.0 / 3.0 * lambda * lambda * b2 * b * e2 +
+           lambda * b2 * b2 * e1 - (a2 + b2);
+}
+
 #endif

@@ -50,13 +50,21 @@ nt_law_value nt_maugis_value_of(const nt_maugis *maugis, const nt_maugis_equilib
     };
 }
 
+nt_maugis_start nt_maugis_start_of(const nt_maugis *maugis)
+{
+    const nt_maugis_folds *folds = &maugis->folds;
+    return (nt_maugis_start){maugis->lambda, maugis->fold_y, folds->grip_radius,
+                             folds->grip_in_contact ? folds->grip_indentation : folds->touch_indentation};
+}
+
 nt_status nt_maugis_contact_find(const nt_maugis *maugis, double d, int stable, nt_maugis_equilibrium *point,
                                  nt_solve_info *info)
 {
-    const nt_maugis_folds *folds = &maugis->folds;
-    const double lowest = folds->grip_in_contact ? folds->grip_indentation : folds->touch_indentation;
-    const nt_maugis_equilibrium fold = {.y = maugis->fold_y, .a = folds->grip_radius, .d = lowest};
-    const nt_maugis_goal goal = {NT_GIVEN_INDENTATION, d, &fold, !stable, 0.0};
+    const nt_maugis_start start = nt_maugis_start_of(maugis);
+    if (stable)
+        return nt_maugis_stable_find(&start, d, point, info);
+    const nt_maugis_equilibrium fold = {.y = start.y, .a = start.a, .d = start.d};
+    const nt_maugis_goal goal = {NT_GIVEN_INDENTATION, d, &fold, 1, 0.0};
     return nt_maugis_point_find(maugis->lambda, &goal, point, info);
 }
 
@@ -66,7 +74,12 @@ static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_
     const nt_status status = nt_maugis_contact_find(maugis, d, stable, &point, info);
     if (status != NT_OK)
         return status;
+    const nt_maugis_start start = nt_maugis_start_of(maugis);
+    const nt_maugis_rest rest = nt_maugis_rest_of(&start, &point, d, NT_FOLD_RESOLUTION * start.y);
     *reduced = nt_maugis_value_of(maugis, &point, stable);
+    reduced->U += rest.U;
+    reduced->F += rest.P;
+    reduced->a += rest.a;
     return NT_OK;
 }
 

@@ -7,21 +7,12 @@
  * at y = 0. A bracket is kept throughout: convergence does not rest on convexity, which is measured, not proved. */
 #include "contact/maugis/solve.h"
 
-#include <float.h>
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis/functions.h"
+#include "contact/maugis/newton.h"
 #include "core/roots.h"
 #include "core/same_bits.h"
-
-enum { MAX_ITERATIONS = 100 };
-
-/* Residuals below this, relative to the larger term of d or P, are rounding: no improvement there ends it. */
-#define FLOOR (64.0 * DBL_EPSILON)
-
-/* After a step this small, relative to y, the error of Newton's method is below rounding. */
-#define QUADRATIC 3e-9
 
 typedef struct {
     double lambda;
@@ -42,7 +33,7 @@ nt_status nt_maugis_fold_find(double lambda, nt_maugis_given given, nt_maugis_eq
     double y = 0.0;
     if (fold_slope(0.0, &context) < 0.0) {
         double bracket[2] = {0.0, nt_maugis_parameter_guess(lambda, 1.5)};
-        for (int i = 0; i < MAX_ITERATIONS && fold_slope(bracket[1], &context) < 0.0; i++)
+        for (int i = 0; i < NT_NEWTON_MAX && fold_slope(bracket[1], &context) < 0.0; i++)
             bracket[1] *= 2.0;
         const nt_status status = nt_root_find(fold_slope, &context, bracket, &y, NULL);
         if (status != NT_OK)
@@ -97,10 +88,10 @@ nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_mau
     else if (Z > 0.0)
         y = goal->below ? guess_below(lambda, goal, Z) : fmax(guess_above(lambda, goal, Z), 1.000001 * y_fold);
     double best = HUGE_VAL, scale = 1.0, step = HUGE_VAL;
-    for (int i = 1; i <= MAX_ITERATIONS; i++) {
+    for (int i = 1; i <= NT_NEWTON_MAX; i++) {
         const nt_maugis_equilibrium here = nt_maugis_equilibrium_of(lambda, nt_maugis_functions_at(y));
         const double value = load ? here.P : here.d, residual = value - goal->target;
-        const int stalled = fabs(residual) >= best && best <= FLOOR * scale;
+        const int stalled = fabs(residual) >= best && best <= NT_NEWTON_FLOOR * scale;
         if (fabs(residual) < best) {
             best = fabs(residual);
             scale = load ? 2.0 * here.a * here.a * here.a - here.P : 2.0 * here.a * here.a - here.d;
@@ -109,7 +100,8 @@ nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_mau
         bracket[(residual > 0.0) != goal->below] = y;
         const double Z_here = sqrt(fmax(value - fold, 0.0));
         double next = newton_y(goal, &here, -residual / (Z_here + Z) * 2.0 * Z_here);
-        const int resolved = best <= FLOOR * scale && (step <= QUADRATIC * y || fabs(next - y) <= DBL_EPSILON * y);
+        const int resolved =
+            best <= NT_NEWTON_FLOOR * scale && (step <= NT_NEWTON_QUADRATIC * y || fabs(next - y) <= DBL_EPSILON * y);
         if (info != NULL)
             *info = (nt_solve_info){i, best / scale};
         if (best <= 0.5 * DBL_EPSILON * scale || stalled || resolved || Z == 0.0)
@@ -118,6 +110,26 @@ nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_mau
             next = bisected_y(y, bracket);
         step = fabs(next - y);
         y = next;
+    }
+    return NT_E_NO_CONVERGENCE;
+}
+
+nt_status nt_maugis_stable_find(const nt_maugis_start *start, double d, nt_maugis_equilibrium *point,
+                                nt_solve_info *info)
+{
+    nt_maugis_newton at = nt_maugis_newton_start(start, d);
+    for (int i = 1; i <= NT_NEWTON_MAX; i++) {
+        int64_t outside;
+        const double y = at.y;
+        const int64_t done = nt_maugis_newton_next(start, &at, &outside);
+        if (info != NULL)
+            *info = (nt_solve_info){i, at.best / at.scale};
+        if (done) {
+            nt_maugis_equilibrium_at(start->lambda, at.best_y, point);
+            return NT_OK;
+        }
+        if (outside)
+            nt_maugis_newton_bisect(&at, y);
     }
     return NT_E_NO_CONVERGENCE;
 }

@@ -4,6 +4,7 @@
 #define NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
 
 #include "contact/maugis/branch.h"
+#include "contact/maugis/newton.h"
 
 /* What is given. */
 typedef enum nt_maugis_given { NT_GIVEN_INDENTATION, NT_GIVEN_LOAD } nt_maugis_given;
@@ -26,6 +27,13 @@ nt_law_value nt_maugis_value_of(const nt_maugis *maugis, const nt_maugis_equilib
 
 nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_maugis_equilibrium *point,
                                nt_solve_info *info);
+
+/* Where the stable contact branch begins. */
+nt_maugis_start nt_maugis_start_of(const nt_maugis *maugis);
+
+/* The stable contact branch at a reduced d, not below that of its start. */
+nt_status nt_maugis_stable_find(const nt_maugis_start *start, double d, nt_maugis_equilibrium *point,
+                                nt_solve_info *info);
 
 /* The contact branch at an indentation between its folds; reduced. */
 nt_status nt_maugis_contact_find(const nt_maugis *maugis, double d, int stable, nt_maugis_equilibrium *point,
