@@ -27,6 +27,7 @@ set(nanotouch_sources_forces
 set(nanotouch_sources_contact
     contact/arrays.c
     contact/contact.c
+    contact/derivatives.c
     contact/dmt.c
     contact/hertz.c
     contact/jkr.c

@@ -10,7 +10,9 @@
 
 #include <cmocka.h>
 
+#include "contact/maugis_table.h"
 #include "nanotouch/contact.h"
+#include "nanotouch/material.h"
 
 enum { MOST = 200 };
 
@@ -127,11 +129,44 @@ static void in_and_out_may_be_one_array(void **state)
     }
 }
 
+/* {U, F, k, a} from a table: blocks of 256 and what is left of them, in all four states of the bodies. */
+static void tables_have_the_bits_of_one_element(void **state)
+{
+    (void)state;
+    enum { LONG = 700, CELLS = 400 };
+    static nt_maugis_cell cells[CELLS];
+    static double in[LONG], out[4][2 * LONG];
+    for (int n = 0; n < 24; n++) {
+        const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.5 * pow(10.0, uniform(-2.0, 3.0))};
+        nt_maugis maugis;
+        nt_maugis_table table;
+        assert_int_equal(nt_maugis_init(&maugis, &contact), NT_OK);
+        assert_int_equal(nt_maugis_table_init(&table, &maugis, NULL, cells, CELLS), NT_OK);
+        const double low = n % 2 ? 1.2 * maugis.folds.grip_indentation : -1.5;
+        for (int i = 0; i < LONG; i++)
+            in[i] = uniform(0.0, 1.0) < 0.1 ? low * uniform(0.5, 1.0) : uniform(low, 10.0);
+        if (n > 18)
+            in[(int)uniform(0.0, LONG)] = n % 3 ? INFINITY : NAN;
+        in[3] = maugis.folds.grip_indentation;
+        const nt_branch branch = n % 3 ? NT_BRANCH_STABLE : NT_BRANCH_APPROACH;
+        const nt_tier tier = n % 4 ? NT_TIER_TABLE : NT_TIER_POLISHED;
+        const nt_strided arrays = {in, out[0], out[1], out[2], out[3], LONG, 1, 2};
+        (void)nt_maugis_table_eval_n(&table, tier, branch, &arrays);
+        for (int i = 0; i < LONG; i++) {
+            nt_law_value value = {NAN, NAN, NAN, NAN};
+            (void)nt_maugis_table_eval(&table, tier, in[i], branch, &value);
+            assert_true(same_bits(out[0][2 * i], value.U) && same_bits(out[1][2 * i], value.F) &&
+                        same_bits(out[2][2 * i], value.k) && same_bits(out[3][2 * i], value.a));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arrays_have_the_bits_of_the_scalar_law),
         cmocka_unit_test(in_and_out_may_be_one_array),
+        cmocka_unit_test(tables_have_the_bits_of_one_element),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import nanotouch as nt
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mpmath import acos, mp, mpf, sqrt
+from mpmath import acos, acot, findroot, mp, mpf, sqrt
 from nanotouch.contact import reduced
 from nanotouch.errors import InvalidValue
 
@@ -44,6 +45,29 @@ def test_printed_equations(lam: float) -> None:
             assert reduced.force(lam, d) == pytest.approx(P, rel=1e-12, abs=1e-12)
             assert reduced.radius(lam, d) == pytest.approx(a, rel=1e-12)
             assert reduced.indentation(lam, P) == pytest.approx(d, rel=1e-12, abs=1e-12)
+
+
+def test_exact_load_is_right_to_8_ulp() -> None:
+    """Of the larger of load and pull-off load, on the stable contact branch from its start on, from DMT to JKR."""
+    rng = np.random.default_rng(5)
+    for _ in range(150):
+        lam = 10 ** rng.uniform(-3.0, 3.0)
+        folds = reduced.folds(lam)
+        start = folds.grip_indentation if folds.grip_kind == "contact" else reduced.at_radius(lam, 0.0).indentation
+        d = float(start + 10 ** rng.uniform(-2.0, 2.5))
+        state = reduced.evaluate(lam, d)
+        with mp.workdps(40):
+
+            def branch(y: Any, lam_: Any = mpf(lam)) -> tuple[Any, Any]:
+                t = acot(y)
+                square, linear = lam_ / 2 * (y + (1 - y * y) * t), mpf(4) / 3 * lam_**2 * (t - sqrt(1 + y * y) + y)
+                b = 2 / (linear + sqrt(linear**2 + 4 * square))
+                return (b * y) ** 2 - mpf(4) / 3 * lam_ * b, (b * y) ** 3 - lam_ * b * b * (y + (1 + y * y) * t)
+
+            a = mpf(state.radius)
+            y = findroot(lambda y, d=d: branch(y)[0] - d, a / ((a * a - d) * 3 / (4 * mpf(lam))), tol=1e-40)
+            error = abs(mpf(state.load) - branch(y)[1]) / max(abs(branch(y)[1]), mpf(1.5))
+        assert error < 8 * 2.0**-52
 
 
 def test_folds_from_dmt_to_jkr() -> None:

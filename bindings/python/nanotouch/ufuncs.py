@@ -15,7 +15,9 @@ does a branch that does not exist there.
 
 A name alone returns energy, force, stiffness and contact radius; ``_energy``, ``_force``, ``_stiffness`` or ``_radius``
 after it return one of them. Contact laws take a branch (``_approach``, ``_unstable``; stable without) and a tier
-(``_table``, ``_polished``; exact without) behind that: ``maugis_force_approach_table``.
+(``_table``, ``_polished``; exact without) behind that: ``maugis_force_approach_table``. ``hertz_gradient``,
+``dmt_gradient``, ``jkr_gradient``, ``maugis_gradient`` (and a branch) return the derivatives of the force by each of
+their arguments.
 """
 
 from __future__ import annotations
@@ -50,6 +52,11 @@ _FORCES = (
 )
 _VALUE_NUMBERS = {"": -1} | {f"_{value}": number for number, value in enumerate(VALUES)}
 
+#: (model, branch) of the derivatives of the force
+_GRADIENTS: dict[str, tuple[int, int]] = {
+    f"{law}_gradient{branch}": (model, number)
+    for (model, law), (number, branch) in itertools.product(enumerate(_CONTACTS[:-1]), enumerate(_BRANCHES))
+}
 #: the numbers by which the C library knows a ufunc: (model, branch, tier, value), or (law, value)
 _NAMES: dict[str, tuple[Any, ...]] = {
     f"{law}{value}{branch}{tier}": (model, _BRANCHES.index(branch), _TIERS.index(tier), number)
@@ -71,19 +78,19 @@ def _is_of_use(name: str) -> bool:
     return is_exact or _BRANCHES[branch] != "_unstable"
 
 
-__all__ = ["VALUES", *filter(_is_of_use, _NAMES)]
+__all__ = ["VALUES", *filter(_is_of_use, _NAMES), *_GRADIENTS]
 
 
 def __getattr__(name: str) -> np.ufunc:
-    numbers = _NAMES.get(name)
-    if numbers is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     doc = f"See {__name__}."
-    made = (
-        _core.contact_ufunc(*numbers, name, doc)
-        if len(numbers) == 4
-        else getattr(_core, f"{numbers[0]}_ufunc")(numbers[1], name, doc)
-    )
+    if name in _GRADIENTS:
+        made = _core.gradient_ufunc(*_GRADIENTS[name], name, doc)
+    elif name in _NAMES:
+        *first, value = _NAMES[name]
+        make: Any = _core.contact_ufunc if len(first) > 1 else getattr(_core, f"{first.pop()}_ufunc")
+        made = make(*first, value, name, doc)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     globals()[name] = made  # also where pickle looks for it
     return made
 
@@ -95,5 +102,13 @@ def __dir__() -> list[str]:
 def contact_ufunc(model: str, value: str, branch: str, tier: str) -> np.ufunc:
     """The ufunc of a model; ``value`` is one of ``VALUES``, or "" for all four."""
     parts = (model, value, "" if branch == "stable" else branch, "" if tier == "exact" else tier)
-    name = "_".join(filter(None, parts))
+    return _named("_".join(filter(None, parts)))
+
+
+def gradient_ufunc(model: str, branch: str) -> np.ufunc:
+    """The derivatives of the force of a model by its arguments."""
+    return _named("_".join((model, "gradient", *([] if branch == "stable" else [branch]))))
+
+
+def _named(name: str) -> np.ufunc:
     return globals().get(name) or __getattr__(name)

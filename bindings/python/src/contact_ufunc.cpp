@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact_table.h"
+#include "nanotouch/advanced/contact_derivatives.h"
 #include "ufunc.h"
 
 namespace
@@ -125,11 +126,52 @@ void loop(char **args, const py::ssize_t *dimensions, const py::ssize_t *steps, 
     }
 }
 
+// The derivatives of the force by every input.
+void gradient_loop(char **args, const py::ssize_t *dimensions, const py::ssize_t *steps, void *data)
+{
+    const ContactUfunc &self = *static_cast<const ContactUfunc *>(data);
+    const int inputs = 1 + parameter_counts[self.model];
+    const UfuncArrays at = {args, steps, 0, inputs};
+    const QuietFlags quiet;
+    for (py::ssize_t first = 0, end = 0; first < dimensions[0]; first = end) {
+        end = at.run_end(first, dimensions[0]);
+        std::array<double, 4> values{};
+        for (int j = 0; j + 1 < inputs; ++j)
+            values[static_cast<size_t>(j)] = at.parameter(j, first);
+        const Prepared &made = prepared(self, values);
+        if (made.status != NT_OK)
+            return set_ufunc_error(made.status, made.problem, "contact");
+        for (py::ssize_t i = first; i < end; ++i) {
+            const double none = std::nan("");
+            nt_contact_derivatives found = {none, none, none, none, none};
+            double indentation;
+            std::memcpy(&indentation, args[0] + i * steps[0], sizeof indentation);
+            (void)nt_contact_law_derivatives(&made.law, indentation, self.branch, &found);
+            const double columns[] = {found.by_indentation, found.by_radius, found.by_effective_modulus,
+                                      found.by_work_of_adhesion, found.by_cohesive_stress};
+            for (int j = 0; j < inputs; ++j)
+                std::memcpy(args[inputs + j] + i * steps[inputs + j], &columns[j], sizeof(double));
+        }
+    }
+}
+
+ContactUfunc *kept(int model, int branch, int tier, int value)
+{
+    static std::deque<ContactUfunc> all; // numpy keeps pointers to these
+    all.push_back({model, static_cast<nt_branch>(branch), static_cast<nt_tier>(tier), value});
+    return &all.back();
+}
+
 py::object contact_ufunc(int model, int branch, int tier, int value, const std::string &name, const std::string &doc)
 {
-    static std::deque<ContactUfunc> all;
-    all.push_back({model, static_cast<nt_branch>(branch), static_cast<nt_tier>(tier), value});
-    return make_ufunc(&loop, &all.back(), 1 + parameter_counts[model], value < 0 ? 4 : 1, name, doc);
+    return make_ufunc(&loop, kept(model, branch, tier, value), 1 + parameter_counts[model], value < 0 ? 4 : 1, name,
+                      doc);
+}
+
+py::object gradient_ufunc(int model, int branch, const std::string &name, const std::string &doc)
+{
+    const int inputs = 1 + parameter_counts[model];
+    return make_ufunc(&gradient_loop, kept(model, branch, NT_TIER_EXACT, 1), inputs, inputs, name, doc);
 }
 
 } // namespace
@@ -138,4 +180,5 @@ void bind_contact_ufunc(py::module_ &module)
 {
     module.def("contact_ufunc", &contact_ufunc, py::arg("model"), py::arg("branch"), py::arg("tier"), py::arg("value"),
                py::arg("name"), py::arg("doc"));
+    module.def("gradient_ufunc", &gradient_ufunc, py::arg("model"), py::arg("branch"), py::arg("name"), py::arg("doc"));
 }

@@ -38,31 +38,55 @@ typedef struct {
 #ifdef TRANSPOSED
 typedef double four __attribute__((vector_size(32)));
 
-/* Cubics of four cells at once. */
-static inline void cubics(const nt_maugis_cell *cells, const int64_t cell[4], const double s[4], double force[4])
+/* Column j of the result holds number j of each of the four. */
+static inline void transpose(const double *const from[4], four to[4])
 {
-    four q0, q1, q2, q3, x;
-    memcpy(&q0, cells[cell[0]].F, sizeof q0);
-    memcpy(&q1, cells[cell[1]].F, sizeof q1);
-    memcpy(&q2, cells[cell[2]].F, sizeof q2);
-    memcpy(&q3, cells[cell[3]].F, sizeof q3);
-    memcpy(&x, s, sizeof x);
+    four q0, q1, q2, q3;
+    memcpy(&q0, from[0], sizeof q0);
+    memcpy(&q1, from[1], sizeof q1);
+    memcpy(&q2, from[2], sizeof q2);
+    memcpy(&q3, from[3], sizeof q3);
     const four even_01 = __builtin_shufflevector(q0, q1, 0, 4, 2, 6),
                odd_01 = __builtin_shufflevector(q0, q1, 1, 5, 3, 7);
     const four even_23 = __builtin_shufflevector(q2, q3, 0, 4, 2, 6),
                odd_23 = __builtin_shufflevector(q2, q3, 1, 5, 3, 7);
-    const four c0 = __builtin_shufflevector(even_01, even_23, 0, 1, 4, 5);
-    const four c1 = __builtin_shufflevector(odd_01, odd_23, 0, 1, 4, 5);
-    const four c2 = __builtin_shufflevector(even_01, even_23, 2, 3, 6, 7);
-    const four c3 = __builtin_shufflevector(odd_01, odd_23, 2, 3, 6, 7);
-    const four result = (c0 + x * c1) + x * x * (c2 + x * c3); /* as nt_cubic */
+    to[0] = __builtin_shufflevector(even_01, even_23, 0, 1, 4, 5);
+    to[1] = __builtin_shufflevector(odd_01, odd_23, 0, 1, 4, 5);
+    to[2] = __builtin_shufflevector(even_01, even_23, 2, 3, 6, 7);
+    to[3] = __builtin_shufflevector(odd_01, odd_23, 2, 3, 6, 7);
+}
+
+/* Cubics of four cells at once. */
+static inline void cubics(const nt_maugis_cell *cells, const int64_t cell[4], const double s[4], double force[4])
+{
+    const double *const from[] = {cells[cell[0]].F, cells[cell[1]].F, cells[cell[2]].F, cells[cell[3]].F};
+    four c[4], x;
+    transpose(from, c);
+    memcpy(&x, s, sizeof x);
+    const four result = (c[0] + x * c[1]) + x * x * (c[2] + x * c[3]); /* as nt_cubic */
     memcpy(force, &result, sizeof result);
+}
+
+/* Four numbers of four cells, into four arrays. */
+static inline void gather(const double *const from[4], double *const to[4])
+{
+    four c[4];
+    transpose(from, c);
+    for (int j = 0; j < 4; j++)
+        memcpy(to[j], &c[j], sizeof c[j]);
 }
 #else
 static inline void cubics(const nt_maugis_cell *cells, const int64_t cell[4], const double s[4], double force[4])
 {
     for (int i = 0; i < 4; i++)
         force[i] = nt_cubic(cells[cell[i]].F, s[i]);
+}
+
+static inline void gather(const double *const from[4], double *const to[4])
+{
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            to[j][i] = from[i][j];
 }
 #endif
 
@@ -161,15 +185,128 @@ nt_status nt_maugis_table_polish_n(const nt_maugis_table *table, nt_branch branc
     return force_n(table, &query, indentation, force, count);
 }
 
-nt_status nt_maugis_table_eval_n(const nt_maugis_table *table, nt_tier tier, nt_branch branch, const nt_strided *arrays)
+/* {U, F, k, a} of a block. */
+typedef struct {
+    double U[BLOCK], F[BLOCK], k[BLOCK], a[BLOCK];
+} values;
+
+/* The numbers of the cells of a block, one array for each: gathered on their own, the rest is plain vector code. */
+typedef struct {
+    double F[4][BLOCK], a[4][BLOCK], U[BLOCK], u[BLOCK];
+} cell_block;
+
+VARIANTS static void cells_gather(const nt_maugis_cell *cells, const int64_t *cell, cell_block *restrict to)
+{
+    for (int i = 0; i < BLOCK; i += 4) {
+        const nt_maugis_cell *c0 = &cells[cell[i]], *c1 = &cells[cell[i + 1]], *c2 = &cells[cell[i + 2]],
+                             *c3 = &cells[cell[i + 3]];
+        const double *const F[] = {c0->F, c1->F, c2->F, c3->F}, *const a[] = {c0->a, c1->a, c2->a, c3->a};
+        double *const to_F[] = {&to->F[0][i], &to->F[1][i], &to->F[2][i], &to->F[3][i]};
+        double *const to_a[] = {&to->a[0][i], &to->a[1][i], &to->a[2][i], &to->a[3][i]};
+        gather(F, to_F);
+        gather(a, to_a);
+    }
+    for (int i = 0; i < BLOCK; i++) {
+        to->U[i] = cells[cell[i]].U;
+        to->u[i] = cells[cell[i]].u;
+    }
+}
+
+VARIANTS static void values_fill(const block *at, const cell_block *cells, const double scales[2], values *restrict out)
+{
+    for (int i = 0; i < BLOCK; i++) {
+        const nt_maugis_cell cell = {
+            .F = {cells->F[0][i], cells->F[1][i], cells->F[2][i], cells->F[3][i]},
+            .a = {cells->a[0][i], cells->a[1][i], cells->a[2][i], cells->a[3][i]},
+            .U = cells->U[i],
+            .u = cells->u[i],
+        };
+        const nt_maugis_place place = {.s = at->s[i], .Z = at->Z[i]};
+        const nt_law_value value = nt_maugis_cell_value(&cell, place, scales[0], scales[1]);
+        const int64_t apart = -(int64_t)(at->cell[i] == NT_CELL_APART);
+        out->U[i] = apart ? 0.0 : value.U;
+        out->F[i] = apart ? 0.0 : value.F;
+        out->k[i] = apart ? 0.0 : value.k;
+        out->a[i] = apart ? 0.0 : value.a;
+    }
+}
+
+/* Where a block lies; 0 where some indentation lies outside the table. */
+VARIANTS static int places_find(const nt_maugis_table *table, nt_branch branch, const double *in, block *restrict at)
+{
+    const nt_maugis_grid grid = nt_maugis_grid_of(table, branch);
+    const double largest = table->largest_indentation;
+    int64_t outside = 0;
+    for (int i = 0; i < BLOCK; i++) {
+        const nt_maugis_place place = nt_maugis_place_of(&grid, in[i]);
+        at->cell[i] = place.cell;
+        at->s[i] = place.s;
+        at->Z[i] = place.Z;
+        outside |= -(int64_t)!(in[i] <= largest);
+    }
+    return outside == 0;
+}
+
+static nt_status values_one_by_one(const nt_maugis_table *table, const nt_maugis_query *query, const nt_strided *arrays,
+                                   long from, long count)
 {
     nt_status first = NT_OK;
-    for (long i = 0; i < arrays->count; i++) {
+    for (long i = from; i < from + count; i++) {
         nt_law_value value = {NAN, NAN, NAN, NAN};
         const double indentation = arrays->in[i * arrays->in_stride];
-        const nt_status status = nt_maugis_table_eval(table, tier, indentation, branch, &value);
+        const nt_status status = nt_maugis_table_eval(table, query->tier, indentation, query->branch, &value);
         first = first == NT_OK ? status : first;
         nt_strided_store(arrays, i, value);
     }
     return first;
+}
+
+/* A whole block; what is attracted and not in contact has its closed form. */
+static nt_status values_block(const nt_maugis_table *table, const nt_maugis_query *query, const nt_strided *arrays,
+                              long from)
+{
+    const double scales[2] = {table->rate, table->start};
+    double in[BLOCK];
+    block at;
+    cell_block cells;
+    values found;
+    int finite = 1;
+    for (int i = 0; i < BLOCK; i++) {
+        in[i] = arrays->in[(from + i) * arrays->in_stride];
+        finite &= isfinite(in[i]) != 0;
+    }
+    if (!finite || !places_find(table, query->branch, in, &at))
+        return values_one_by_one(table, query, arrays, from, BLOCK);
+    cells_gather(table->cells, at.cell, &cells);
+    values_fill(&at, &cells, scales, &found);
+    for (int i = 0; i < BLOCK; i++)
+        if (at.cell[i] == NT_CELL_ATTRACTED) {
+            nt_law_value value = {0};
+            (void)nt_maugis_table_eval(table, query->tier, in[i], query->branch, &value);
+            found.U[i] = value.U;
+            found.F[i] = value.F;
+            found.k[i] = value.k;
+            found.a[i] = value.a;
+        }
+    const double *const columns[] = {found.U, found.F, found.k, found.a};
+    double *const to[] = {arrays->U, arrays->F, arrays->k, arrays->a};
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; to[j] && i < BLOCK; i++)
+            to[j][(from + i) * arrays->out_stride] = columns[j][i];
+    return NT_OK;
+}
+
+nt_status nt_maugis_table_eval_n(const nt_maugis_table *table, nt_tier tier, nt_branch branch, const nt_strided *arrays)
+{
+    const nt_maugis_query query = {tier, branch};
+    const int held = branch == NT_BRANCH_STABLE || branch == NT_BRANCH_APPROACH;
+    const int has_blocks = table->cells != NULL && held && tier == NT_TIER_TABLE;
+    const long whole = has_blocks ? arrays->count - arrays->count % BLOCK : 0;
+    nt_status first = NT_OK;
+    for (long i = 0; i < whole; i += BLOCK) {
+        const nt_status status = values_block(table, &query, arrays, i);
+        first = first == NT_OK ? status : first;
+    }
+    const nt_status status = values_one_by_one(table, &query, arrays, whole, arrays->count - whole);
+    return first == NT_OK ? status : first;
 }

@@ -107,12 +107,13 @@ static inline nt_law_value nt_maugis_cell_value(const nt_maugis_cell *cell, nt_m
     const double sum =
         w * c[0] + s * ((c[0] + w * c[1]) / 2.0 +
                         s * ((c[1] + w * c[2]) / 3.0 + s * ((c[2] + w * c[3]) / 4.0 + s * (c[3] / 5.0))));
-    const double Z = fmax(place.Z, NT_FOLD_RESOLUTION * sqrt(fabs(start)));
+    const double resolved = NT_FOLD_RESOLUTION * sqrt(fabs(start)), Z = place.Z > resolved ? place.Z : resolved;
     const double bend = 2.0 * c[2] + 3.0 * c[3] * s;
+    const double rise = w == 0.0 ? c[1] : c[1] + s * bend, limit = w == 0.0 ? rate * bend : 0.0;
     return (nt_law_value){
         .U = cell->U + 2.0 * s * sum / (rate * rate),
         .F = nt_cubic(c, s),
-        .k = 0.5 * rate * (w == 0.0 ? c[1] / Z + rate * bend : (c[1] + s * bend) / Z),
+        .k = 0.5 * rate * (rise / Z + limit),
         .a = nt_cubic(cell->a, s),
     };
 }

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import importlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
 from numpy.typing import ArrayLike
 
@@ -157,6 +157,33 @@ def force(
         return law.force(indentation)
     operands = (as_operand(indentation, "indentation"), *contact._operands(model))
     return value_over(ufuncs.contact_ufunc(model, "force", branch, tier), operands, out, where)
+
+
+class Gradient(NamedTuple):
+    """How the force changes with each of what it depends on; each an array of the input's shape, or a float."""
+
+    indentation: Any
+    """the stiffness [N/m]"""
+    radius: Any
+    """[N/m]"""
+    effective_modulus: Any
+    """[N/Pa]"""
+    work_of_adhesion: Any
+    """[N m^2/J]; 0 of Hertz"""
+    cohesive_stress: Any
+    """[N/Pa]; 0 of all but Maugis-Dugdale"""
+
+
+def gradient(model: Model, indentation: ArrayLike, contact: Contact, branch: Branch = "stable") -> Gradient:
+    """Derivatives of the force by the indentation and by each parameter of the contact, for fits and uncertainty.
+
+    In closed form. At a fold, where the force has no slope, they are large and of no use; NaN where the branch does not
+    exist. A ``cohesive_range`` h0 is w over the cohesive stress: with it given, w changes the stress, too.
+    """
+    contact.law(model, branch)  # checked
+    columns = ufuncs.gradient_ufunc(model, branch)(as_operand(indentation, "indentation"), *contact._operands(model))
+    nothing = (0.0 * columns[0],) * (len(Gradient._fields) - len(columns))
+    return Gradient(*map(plain, (*columns, *nothing)))
 
 
 def indentation(model: Model, force: ArrayLike, contact: Contact, branch: Branch = "stable") -> Any:

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Laws over arrays of 4096, each in a function of its own, for bench_element.py to count the instructions of. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "nanotouch/advanced/maugis_table.h"
+#include "nanotouch/contact.h"
+#include "nanotouch/forces.h"
+#include "nanotouch/material.h"
+
+enum { COUNT = 4096, CELLS = 400, CALLS = 4096 };
+
+#if defined(__GNUC__)
+#define COUNTED __attribute__((noinline)) static void
+#else
+#define COUNTED static void
+#endif
+
+static double in[COUNT], out[4][COUNT];
+static nt_contact_law hertz, jkr, maugis;
+static nt_maugis_cell cells[CELLS];
+static nt_maugis_table table;
+
+static void over(const nt_contact_law *law, int all)
+{
+    const nt_strided arrays = {in, all ? out[0] : NULL, out[1], all ? out[2] : NULL, all ? out[3] : NULL, COUNT, 1, 1};
+    (void)nt_contact_law_eval_n(law, NT_BRANCH_STABLE, &arrays);
+}
+
+COUNTED element_hertz(void)
+{
+    over(&hertz, 0);
+}
+
+COUNTED element_jkr(void)
+{
+    over(&jkr, 0);
+}
+
+COUNTED element_exact(void)
+{
+    over(&maugis, 0);
+}
+
+COUNTED element_exact_values(void)
+{
+    over(&maugis, 1);
+}
+
+COUNTED element_table(void)
+{
+    (void)nt_maugis_table_force_n(&table, NT_BRANCH_STABLE, in, out[0], COUNT);
+}
+
+COUNTED element_table_values(void)
+{
+    const nt_strided arrays = {in, out[0], out[1], out[2], out[3], COUNT, 1, 1};
+    (void)nt_maugis_table_eval_n(&table, NT_TIER_TABLE, NT_BRANCH_STABLE, &arrays);
+}
+
+COUNTED element_polished(void)
+{
+    (void)nt_maugis_table_polish_n(&table, NT_BRANCH_STABLE, in, out[0], COUNT);
+}
+
+COUNTED element_scalar_exact(void)
+{
+    for (int i = 0; i < CALLS; i++) {
+        nt_law_value value = {0};
+        (void)nt_contact_law_eval(&maugis, in[i], NT_BRANCH_STABLE, &value);
+        out[0][i] = value.F;
+    }
+}
+
+int main(void)
+{
+    const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.5};
+    if (nt_contact_law_init(&hertz, NT_HERTZ, &contact) != NT_OK ||
+        nt_contact_law_init(&jkr, NT_JKR, &contact) != NT_OK ||
+        nt_contact_law_init(&maugis, NT_MAUGIS, &contact) != NT_OK ||
+        nt_maugis_table_init(&table, &maugis.maugis, NULL, cells, CELLS) != NT_OK)
+        return 1;
+    unsigned random = 1;
+    for (int i = 0; i < COUNT; i++) {
+        random = random * 1664525u + 1013904223u;
+        in[i] = -0.9 + 10.0 * (double)(random >> 8) / 16777216.0;
+    }
+    void (*const all[])(void) = {element_hertz, element_jkr,          element_exact,    element_exact_values, //
+                                 element_table, element_table_values, element_polished, element_scalar_exact};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        all[i]();
+    printf("%g\n", out[0][COUNT / 2]);
+    return 0;
+}
