@@ -89,7 +89,7 @@ ARRAY(hertz_array, hertz(d))
 CHAIN(hertz_chain, hertz(d))
 ARRAY(jkr_closed_array, jkr_closed(d))
 CHAIN(jkr_closed_chain, jkr_closed(d))
-ARRAY(exact_array, exact(d))
+ARRAY(exact_one_by_one, exact(d))
 CHAIN(exact_chain, exact(d))
 CHAIN(table_chain, nt_maugis_table_force(&now.table, d))
 CHAIN(polished_chain, nt_maugis_table_polish(&now.table, d))
@@ -102,6 +102,34 @@ static void table_array(void)
 static void polished_array(void)
 {
     (void)nt_maugis_table_polish_n(&now.table, NT_BRANCH_STABLE, now.in, now.out, COUNT);
+}
+
+static void law_over(nt_model model, int all)
+{
+    static double U[COUNT], k[COUNT], a[COUNT];
+    const nt_contact_law law = {model, now.maugis};
+    const nt_strided arrays = {now.in, all ? U : NULL, now.out, all ? k : NULL, all ? a : NULL, COUNT, 1, 1};
+    (void)nt_contact_law_eval_n(&law, NT_BRANCH_STABLE, &arrays);
+}
+
+static void hertz_law_array(void)
+{
+    law_over(NT_HERTZ, 0);
+}
+
+static void jkr_law_array(void)
+{
+    law_over(NT_JKR, 0);
+}
+
+static void exact_array(void)
+{
+    law_over(NT_MAUGIS, 0);
+}
+
+static void exact_values(void)
+{
+    law_over(NT_MAUGIS, 1);
 }
 
 static void values_of(nt_tier tier)
@@ -231,6 +259,7 @@ static void run(double lambda)
 {
     static const benchmark all[] = {
         {"hertz array", hertz_array, hertz_array},
+        {"hertz law array", hertz_law_array, hertz_array},
         {"hertz latency", hertz_chain, hertz_chain},
         {"maugis table array", table_array, hertz_array},
         {"maugis table latency", table_chain, hertz_chain},
@@ -239,6 +268,8 @@ static void run(double lambda)
         {"maugis polished latency", polished_chain, hertz_chain},
         {"maugis polished array U F k a", polished_values, hertz_array},
         {"maugis exact array", exact_array, hertz_array},
+        {"maugis exact array U F k a", exact_values, hertz_array},
+        {"maugis exact one by one", exact_one_by_one, hertz_array},
         {"maugis exact latency", exact_chain, hertz_chain},
         {"maugis exact indentation array", load_array, hertz_array},
         {"maugis bank array", bank_array, hertz_array},
@@ -246,6 +277,7 @@ static void run(double lambda)
         {"maugis bank pairs, checked, with dU/dR", bank_pairs, hertz_chain},
         {"surface latency", surface_chain, hertz_chain},
         {"radius map latency", radius_chain, hertz_chain},
+        {"jkr law array", jkr_law_array, hertz_array},
         {"jkr closed form array", jkr_closed_array, hertz_array},
         {"jkr closed form latency", jkr_closed_chain, hertz_chain},
     };

@@ -58,7 +58,7 @@ def test_exact_load_is_right_to_8_ulp() -> None:
         state = reduced.evaluate(lam, d)
         with mp.workdps(40):
 
-            def branch(y: Any, lam_: Any = mpf(lam)) -> tuple[Any, Any]:
+            def branch(y: Any, lam_: float = lam) -> tuple[Any, Any]:
                 t = acot(y)
                 square, linear = lam_ / 2 * (y + (1 - y * y) * t), mpf(4) / 3 * lam_**2 * (t - sqrt(1 + y * y) + y)
                 b = 2 / (linear + sqrt(linear**2 + 4 * square))
