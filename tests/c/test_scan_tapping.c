@@ -131,26 +131,31 @@ static void balances_hold(void **state)
 }
 
 /* A meniscus that forms and breaks in each period: minus the closed integral of F dq is the loss that the law names.
- * The jump is crossed within the tolerance, which moves it by 5e-5 at most here. */
+ * A jump is crossed by a step whose error is at the tolerance; where in that step is a matter of rounding. Of 60
+ * amplitudes that differ by 1e-11 half were within 2.7e-5, nine in ten within 1.1e-4, and all within 4e-4. */
 static void a_loop_has_its_area(void **state)
 {
     (void)state;
+    enum { RUNS = 10 };
     nt_scene scene = nt_scene_defaults();
     scene.tip.radius = 10e-9;
     make_plan(&scene);
     assert_true(plan.capture_energy + plan.release_energy > 1e-19);
     const nt_probe probe = lever(40.0, 400.0);
-    for (int at_base = 0; at_base < 2; at_base++) {
-        const nt_tapping t = made(&probe, (nt_drive){at_base, 0.0, 20e-9});
-        const nt_tapping_over over = {&plan, NULL, 14e-9};
+    int near = 0;
+    for (int n = 0; n < RUNS; n++) {
+        const nt_tapping t = made(&probe, (nt_drive){n % 2, 0.0, 20e-9});
+        const nt_tapping_over over = {&plan, NULL, 14e-9 * (1.0 + 1e-11 * n)};
         nt_tapping_state s = nt_tapping_free(&t);
         nt_tapping_value v;
         assert_int_equal(nt_tapping_settle(&t, &s, &over, &v, NULL), NT_OK);
-        assert_true(fabs(v.tip_loss / v.jump_loss - 1.0) < 1e-4);
+        assert_true(fabs(v.tip_loss / v.jump_loss - 1.0) < 1e-3);
+        near += fabs(v.tip_loss / v.jump_loss - 1.0) < 1e-4;
         assert_true(fabs(v.jump_loss / (plan.capture_energy + plan.release_energy) - 1.0) < 1e-9);
         /* what the drive gives is what medium and contact take */
         assert_true(fabs(v.drive_work / (v.medium_loss + v.tip_loss) - 1.0) < 1e-5);
     }
+    assert_true(near > RUNS / 2);
 }
 
 /* The same motion by far smaller steps; and the same bits from a copy of the state. */
