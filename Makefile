@@ -81,6 +81,7 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/plan_pairs.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/refusals.py
+	@$(VENV)/python tests/heavy/bridges.py
 	@NANOTOUCH_ALL_BRIDGES=1 $(VENV)/python -m pytest -q tests/python/test_bridges.py
 	@$(VENV)/python tests/heavy/lines.py
 	@$(VENV)/python tests/heavy/extremes.py

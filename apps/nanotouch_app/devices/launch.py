@@ -18,9 +18,10 @@ from nanotouch.errors import DeviceError
 from nanotouch.touch.scratch import Scratch
 
 from nanotouch_app.devices import calibration
-from nanotouch_app.devices.bridge import PATIENCE, TIMEOUT
+from nanotouch_app.devices.bridge import TIMEOUT
 from nanotouch_app.devices.table import Device, named
 
+START = 30.0  # of a bridge on a busy machine; without a device it ends by itself, before that [s]
 ENDS, RELEASES = 3.0, 8.0  # a bridge that is asked to, within this [s]
 _numbers = itertools.count(1)
 
@@ -61,7 +62,7 @@ class Launched:
 
         threading.Thread(target=read, daemon=True).start()
         with suppress(queue.Empty):
-            while line := lines.get(timeout=PATIENCE + ENDS):
+            while line := lines.get(timeout=START):
                 if line == "ready":
                     return
         raise DeviceError(self._last_words() or f"the {self.device.title} gives no reading. {self.device.needs}")
