@@ -77,7 +77,6 @@ def tried(kind: Kind, seconds: float) -> tuple[float, float, float]:
             time.sleep(0.005)
         os.kill(bridge.process.pid, signal.SIGKILL)
         killed = time.monotonic()
-        bridge.close()
         while device.size > 0.0 and time.monotonic() < killed + 10.0:
             time.sleep(1e-3)
         left = time.monotonic() - killed

@@ -16,6 +16,7 @@ import importlib.util
 import math
 import os
 import signal
+import subprocess
 import sys
 import threading
 from collections.abc import Sequence
@@ -34,6 +35,8 @@ PATIENCE = 6.0
 """until the first reading [s]"""
 TIMEOUT = 0.5
 """of the mailbox: who is silent for so long is lost; a busy machine may stop a program for a tenth of that [s]"""
+DONE = b"done"
+"""of a bridge that has let go by itself, to its guard"""
 PRIORITY = 10
 """of SCHED_FIFO"""
 FRESH, GONE = 0.03, 0.08
@@ -99,9 +102,11 @@ def serve(device: Device, args: argparse.Namespace, stopped: threading.Event) ->
     with mailbox.Device(args.name, capabilities, timeout=args.timeout) as opened:
         box = Box(opened, capabilities, found)
         late: list[str] = []
+        guards: list[subprocess.Popen[bytes]] = []
 
         def announce() -> None:
             if box.first.wait(PATIENCE):
+                guards.append(_guard(args))
                 print("ready", flush=True)
             elif not stopped.is_set():
                 late.append(box.trouble or "no reading has come")
@@ -112,8 +117,27 @@ def serve(device: Device, args: argparse.Namespace, stopped: threading.Event) ->
             module.serve(box, args.option, stopped)
         except DeviceError as error:
             late.append(str(error))
+        for guard in guards:
+            guard.communicate(DONE)
         if late:
             raise DeviceError(f"{device.title}: {late[0]}. {device.needs}")
+
+
+def _guard(args: argparse.Namespace) -> subprocess.Popen[bytes]:
+    """A second process, which lets go of the device if this one is killed: the pipe between them ends then."""
+    option = ["--option", args.option] if args.option else []
+    command = [sys.executable, "-P", "-m", __spec__.name, args.device, args.name, *option, "--guard"]
+    return subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True)
+
+
+def watch(device: Device, option: str) -> None:
+    """The guard: wait for the end of the bridge."""
+    module_of(device)  # now, not when it is needed
+    said = b""
+    while more := os.read(0, 4096):
+        said += more
+    if said != DONE:
+        release(device, option)
 
 
 def release(device: Device, option: str) -> None:
@@ -165,7 +189,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--calibration", type=Path, metavar="FILE", help="as nanotouch live --calibrate has kept it")
     parser.add_argument("--child", action="store_true", help="end with the input")
-    parser.add_argument("--release", action="store_true", help="let go of the device, and end")
+    parser.add_argument("--guard", action="store_true", help="let go of the device when the input ends early")
     return parser
 
 
@@ -176,13 +200,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     _run_first()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stopped.set())
-    if args.child:
+    if args.guard:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
+    elif args.child:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the session, which ends first
         _listen(stopped)
     try:
         device = named(args.device)
-        if args.release:
-            release(device, args.option)
+        if args.guard:
+            watch(device, args.option)
         else:
             serve(device, args, stopped)
     except Error as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Starts the bridge of a haptic device and ends it; lets go of the device where the bridge was killed."""
+"""Starts the bridge of a haptic device and ends it. The bridge's guard lets go of the device where it was killed."""
 
 from __future__ import annotations
 
@@ -60,7 +60,8 @@ class Launched:
                 lines.put(line.strip())
             lines.put("")
 
-        threading.Thread(target=read, daemon=True).start()
+        self._reader = threading.Thread(target=read, daemon=True)
+        self._reader.start()
         with suppress(queue.Empty):
             while line := lines.get(timeout=START):
                 if line == "ready":
@@ -85,22 +86,16 @@ class Launched:
         )
 
     def close(self) -> None:
-        """End it in order; where it does not, or has been killed, the device is let go of by a bridge anew."""
+        """End it in order, or by force where it hangs; then wait until the device is let go of."""
         assert self.process.stdin is not None
         with suppress(OSError):
             self.process.stdin.close()
         try:
-            is_ordered = self.process.wait(ENDS) >= 0
+            self.process.wait(ENDS)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
-            is_ordered = False
-        if not is_ordered:
-            with suppress(subprocess.TimeoutExpired):
-                subprocess.run(
-                    self._command("--release"), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                    stderr=subprocess.DEVNULL, env=_environment(), timeout=RELEASES, check=False,
-                )  # fmt: skip
+        self._reader.join(RELEASES)  # its guard has the same output
         if self.process.stdout is not None:
             self.process.stdout.close()
         self._folder.close()

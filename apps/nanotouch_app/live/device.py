@@ -15,6 +15,7 @@ from subprocess import Popen
 from typing import Any
 
 import nanotouch as nt
+import numpy as np
 from nanotouch import record
 from nanotouch.errors import DeviceError, Error, InvalidValue
 from nanotouch.units import in_words
@@ -138,9 +139,10 @@ def _turns(session: nt.Session, bridge: Launched | None, window: Popen[str] | No
     with nt.frames.attach(session._name) as frames:
         is_felt, due = False, 0.0
         while window is None or window.poll() is None:
-            frame = frames.newest()
-            if frame is not None:
-                if not is_felt and abs(frame["motor_force"][2]) > FELT:
+            since = frames.read()
+            if len(since):
+                frame = since[-1]
+                if not is_felt and np.abs(since["motor_force"][:, 2]).max() > FELT:
                     is_felt = True
                     print(f"first force on the hand {time.monotonic() - begun:.1f} s after the command", flush=True)
                 if window is None and time.monotonic() > due:
