@@ -16,7 +16,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Self
@@ -54,8 +54,8 @@ def give_back(link: Link, limits: Limits) -> None:
 class Watcher:
     """The process, from the side of the bridge. It outlives the bridge by what it has to do."""
 
-    def __init__(self, host: str, ports: Sequence[int], patience: float) -> None:
-        command = [sys.executable, "-P", "-m", __name__, host, str(patience), *map(str, ports)]
+    def __init__(self, host: str, ports: Sequence[int], patience: float, module: str = __name__) -> None:
+        command = [sys.executable, "-P", "-m", module, host, str(patience), *map(str, ports)]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -97,7 +97,7 @@ class Watcher:
 
 def _said(text: str) -> None:
     with suppress(OSError):  # the terminal may have gone with the bridge
-        print(f"nanonis: {text}", file=sys.stderr, flush=True)
+        print(f"watcher: {text}", file=sys.stderr, flush=True)
 
 
 def rescue(host: str, ports: Sequence[int], patience: float, limits: Limits) -> bool:
@@ -134,7 +134,12 @@ def _lines() -> queue.SimpleQueue[str | None]:
     return found
 
 
-def watch(host: str, ports: Sequence[int], patience: float) -> None:
+def watch(
+    host: str,
+    ports: Sequence[int],
+    patience: float,
+    rescues: Callable[[str, Sequence[int], float, Limits], bool] = rescue,
+) -> None:
     """Until the bridge ends."""
     lines = _lines()
     line: str | None = ""
@@ -146,18 +151,18 @@ def watch(host: str, ports: Sequence[int], patience: float) -> None:
             line = ""  # it hangs; if it comes back, it says where it stands
         if held and not line:
             _said(f"the bridge {'is gone' if line is None else 'hangs'}: withdrawing")
-            is_done = rescue(host, ports, patience, held)
+            is_done = rescues(host, ports, patience, held)
             _said("withdrawn" if is_done else "no controller has acknowledged a withdrawal: the tip may still touch")
 
 
-def main(arguments: Sequence[str]) -> int:
+def main(arguments: Sequence[str], rescues: Callable[[str, Sequence[int], float, Limits], bool] = rescue) -> int:
     """Run the process. Ctrl-C and a request to end are for the bridge, whose end it waits for."""
     host, patience, *ports = arguments
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
     print("ready", flush=True)
-    watch(host, [int(port) for port in ports], float(patience))
+    watch(host, [int(port) for port in ports], float(patience), rescues)
     return 0
 
 
