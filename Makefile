@@ -133,7 +133,7 @@ conformance:  ## what each backend keeps of the rules in docs/hal.md, as a table
 	@cmake --build --preset release --target test_hal_conformance test_hal_mailbox test_hal_spi test_hal_spi_fuse test_session_tapping_converters $(IIO_TEST) >/dev/null
 	@$(VENV)/python tools/conformance.py build/release/tests/c $(IIO_TEST:%=build/release/tests/c/%)
 
-bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
+bench:  ## what one call costs on this machine; JSON in build/release/tests/bench (docs/speed.md: tests/bench/speed.py)
 	@tools/setup.sh test
 	@cmake --preset release --log-level WARNING >/dev/null
 	@cmake --build --preset release --target bench
