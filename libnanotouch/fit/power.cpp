@@ -19,7 +19,9 @@ namespace nanotouch
 namespace
 {
 
-constexpr double surely = 3.0;   // standard deviations of the power
+constexpr double sharper = 2.0;  // standard deviations by which the power is above the law's: its own sigma is somewhat
+                                 // large (z scatters by 0.8), and layers, films and cones are common
+constexpr double blunter = 3.0;  // by which it is below
 constexpr double matters = 0.05; // of the power: what it is off by moves E* by some 15 %
 constexpr long some = 60;        // means
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -125,6 +127,7 @@ void find_power(const std::vector<nt_fit_point> &points, const nt_fit_data &data
 bool asks_other_power(const nt_fit_solution &solution)
 {
     const double off = solution.power[0] - nt_fit_describe(solution.options.model).exponent;
+    const double surely = off > 0.0 ? sharper : blunter;
     return std::fabs(off) > std::max(matters, surely * solution.power[1]); // not where untold
 }
 

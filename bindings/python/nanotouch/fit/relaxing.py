@@ -7,6 +7,8 @@ approach are fitted by Ting's law on a power law, and the exponent decides.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from nanotouch.curves import CurveReport, ForceCurve
@@ -94,13 +96,13 @@ def _like(setup: Setup) -> str | None:
 def _exponent(curve: ForceCurve, report: CurveReport, law: Law, approach_only: bool) -> tuple[float, float] | None:
     """Of a power law that describes the curve and surely relaxes, with its sigma."""
     try:
-        track = track_of(curve, report, approach_only=approach_only, window=None)
-        found = solve(extension(), law, track)
+        track, each = track_of(curve, report, approach_only=approach_only, window=None).thinned()
+        found = solve(extension(), replace(law, noise=law.noise / each**0.5), track)
     except Error:  # no times, or none that this law comes near
         return None
     place = found.free.index("exponent")
     value, sigma = found.values["exponent"], float(np.sqrt(found.covariance[place, place]))
-    rms = found.rms(track)
+    rms = float(np.hypot(found.rms(track), law.noise * (1.0 - 1.0 / each) ** 0.5))
     describes = rms < _NEAR * law.noise or rms < _SMALL * float(found.raw["peak"])
     sure = value - _SIGMAS * sigma > EXPONENT and bool(found.raw["converged"])
     return (value, sigma) if describes and sure else None

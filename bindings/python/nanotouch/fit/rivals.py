@@ -15,6 +15,7 @@ from .over_time import OVER_TIME
 from .ting import Found, Law, Track, solve
 
 _WIDENED = 2.0  # sigma over that of white noise, from where others are tried
+_SMALL = 5e-4  # of the load: residuals that change nothing
 _BETTER = 0.25  # of the squared residual beyond the noise
 _SIGMAS = 2.5
 _APART = {"exponent": 0.01}  # least difference that counts
@@ -26,13 +27,16 @@ _TIPS = {"paraboloid": "_cone", "sphere": "_cone", "cone": "", "punch": ""}
 def doubt_of(law: Law, track: Track, found: Found) -> str:
     """In words; empty where the residuals are noise, or where nothing else describes the curve better."""
     beyond = _beyond(law, track, found)
-    if widened(found) < _WIDENED or not beyond > _margin(law, track):
+    least = max(_margin(law, track), (_SMALL * float(found.raw["peak"])) ** 2)
+    if widened(found) < _WIDENED or not beyond > least:
         return ""
+    track, each = track.thinned()
+    law = replace(law, noise=law.noise / each**0.5)
     for name in _rivals(law):
         other = _fitted(replace(law, model=OVER_TIME[name]), track)
         if other is not None and _beyond(law, track, other) < _BETTER * beyond + _margin(law, track):
             return f"{name} describes the curve better"
-    return _doubt_of_approach(law, track, found)
+    return _doubt_of_approach(law, track, found, beyond)
 
 
 def widened(found: Found) -> float:
@@ -67,12 +71,12 @@ def _margin(law: Law, track: Track) -> float:
     return float(3.0 * np.sqrt(2.0 / np.count_nonzero(track.fitted)) * law.noise**2)
 
 
-def _doubt_of_approach(law: Law, track: Track, found: Found) -> str:
+def _doubt_of_approach(law: Law, track: Track, found: Found, beyond: float) -> str:
     if len(track.starts) < 2 or not track.fitted[track.starts[-1] :].any():
         return ""
     alone = replace(track, fitted=track.fitted & (np.arange(track.time.size) < track.starts[-1]))
     other = _fitted(law, alone)
-    if other is None or _beyond(law, alone, other) > _BETTER * _beyond(law, track, found) + _margin(law, alone):
+    if other is None or _beyond(law, alone, other) > _BETTER * beyond + _margin(law, alone):
         return ""
     sigma = [dict(zip(one.free, np.sqrt(np.diag(one.covariance).clip(0.0)), strict=True)) for one in (found, other)]
     for parameter in law.model.parameters:

@@ -66,6 +66,30 @@ class Track:
         """For the C library, forces multiplied by a factor."""
         return extension.Path(self.time, self.position, self.force * factor, self.fitted.astype(np.uint8), self.starts)
 
+    def thinned(self, most: int = 2000) -> tuple[Track, int]:
+        """Means of so many points each that hardly more than `most` are left, and how many: for a comparison of laws,
+        whose time goes with the points. Ends of segments stay on the path, since they are where the base turns."""
+        each = -(-self.time.size // most)
+        if each < 2:
+            return self, 1
+        columns: list[list[Floats]] = [[], [], [], []]
+        starts, count = [], 0
+        for first, end in zip(self.starts, [*self.starts[1:], self.time.size], strict=True):
+            blocks = slice(first, first + (end - first) // each * each)
+            for place, column in enumerate((self.time, self.position, self.force, self.fitted.astype(float))):
+                means = column[blocks].reshape(-1, each).mean(axis=1)
+                ends = (
+                    (0.0, 0.0) if place == 3 else _ends(means) if len(means) > 1 else (column[first], column[end - 1])
+                )
+                columns[place].append(np.concatenate([ends[:1], means, ends[1:]]))
+            starts.append(count)
+            count += columns[0][-1].size
+        time, position, force, fitted = (np.concatenate(column) for column in columns)
+        kept = np.diff(time, prepend=-np.inf) > 0.0  # a segment of one point has but one end
+        starts = [int(np.count_nonzero(kept[:start])) for start in starts]
+        return replace(self, time=time[kept], position=position[kept], force=force[kept], fitted=fitted[kept] > 0.999,
+                       starts=starts), each  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Law:
@@ -120,6 +144,12 @@ class Law:
             elif name in self.start:
                 options.start(place, self.start[name] / self.scale(name))
         return options
+
+
+def _ends(means: Floats) -> tuple[float, float]:
+    """Half a block before the first mean and after the last: single points jitter."""
+    first, last = 0.5 * (means[1] - means[0]), 0.5 * (means[-1] - means[-2])
+    return float(means[0] - first), float(means[-1] + last)
 
 
 def parameters_of(model: Model) -> dict[str, tuple[int, str]]:
