@@ -249,7 +249,9 @@ def _real_stage(folder: Path) -> Path:
 def test_the_command_leads_a_real_stage_at_hard_pace(screen: str, tmp_path: Path) -> None:
     """The wheel moves its hand, whatever the scheduler does with the deadlines; Q leaves, and the stage is lifted."""
     environment = {**os.environ, "DISPLAY": screen}
-    command = [sys.executable, "-m", "nanotouch_app", "live", str(_real_stage(tmp_path)), "--allow-code"]
+    kept = tmp_path / "touch.mcap"
+    command = [sys.executable, "-m", "nanotouch_app", "live", str(_real_stage(tmp_path)), "--allow-code",
+               "--record", str(kept)]  # fmt: skip
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as view:
         assert view.stdout is not None
         said = view.stdout.readline()
@@ -268,6 +270,9 @@ def test_the_command_leads_a_real_stage_at_hard_pace(screen: str, tmp_path: Path
         observer.close()
         subprocess.run(["xdotool", "key", "q"], env=environment, check=True)
         assert view.wait(PATIENCE) == 0
+    recording = nt.record.read(kept)
+    assert recording.master_position.max() > start + 1e-5
+    assert np.diff(recording.time).max() < 1.5 * np.median(np.diff(recording.time))  # no tick is lost
 
 
 def test_no_window_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from nanotouch import Surface, Topography, surface
 from nanotouch.errors import InvalidValue
+from nanotouch.images.checks import unusual
 
 
 def bumpy(shape: tuple[int, int] = (12, 17), pixel: tuple[float, float] = (2e-9, 3e-9)) -> Topography:
@@ -152,6 +153,16 @@ def test_dots() -> None:
     assert 10e-9 / 3 * 0.9 < made.heights.max() <= 10e-9  # caps a third as high as they are wide
     np.testing.assert_array_equal(made.heights, surface.dots().heights)
     assert (made.heights != surface.dots(seed=2).heights).any()
+
+
+def test_spikes_are_an_array_that_our_own_reader_accepts() -> None:
+    found = nt.surface.spikes()
+    assert found.size == pytest.approx((6e-6, 6e-6))
+    assert found.height_range == pytest.approx(300e-9, rel=0.02)
+    low = found.heights < 0.5 * found.height_range
+    edges = np.abs(np.diff(low[low.shape[0] // 2].astype(int))).sum()
+    assert edges == 6  # three in a row
+    assert unusual(found) == ()
 
 
 def test_flat() -> None:

@@ -83,6 +83,7 @@ def run(args: argparse.Namespace) -> int:
         return _list()
     if args.what is None:
         args.what = next(iter(PRESETS)) if args.task is None else _task(args.task)["preset"]
+    _check_written(args)
     if real.is_named(args.what):
         return real.touch(args)
     is_recording = _checked(args)
@@ -113,8 +114,8 @@ def _task(name: str) -> dict[str, Any]:
     return TASKS[name]
 
 
-def _checked(args: argparse.Namespace) -> bool:
-    """Refuse what cannot be done; whether a recording is named."""
+def _check_written(args: argparse.Namespace) -> None:
+    """Refuse files that cannot be written."""
     for option, file, endings in (("--film", args.film, FILMS), ("--record", args.record, RECORDS)):
         if file is not None:
             if Path(file).suffix.lower() not in endings:
@@ -122,6 +123,10 @@ def _checked(args: argparse.Namespace) -> bool:
             if not Path(file).parent.is_dir():
                 raise InvalidValue(f"{option} {file}: {Path(file).parent} is not a folder")
             output.check_free(Path(file), args, option)
+
+
+def _checked(args: argparse.Namespace) -> bool:
+    """Refuse what cannot be done; whether a recording is named."""
     files.check_named(args.what)
     is_recording = Path(args.what).is_file() and record.is_recording(args.what)
     _check_together(args, is_recording)

@@ -11,16 +11,6 @@ import numpy as np
 PERSISTENCE = 50e-9  # of double-stranded DNA: Rivetti, Guthold, Bustamante, J. Mol. Biol. 264 (1996) 919 [m]
 
 
-def spikes(size: float = 4.24e-6, period: float = 2.12e-6, height: float = 350e-9, pixels: int = 256) -> nt.Topography:
-    """A field of sharp spikes as on TGT01: 50 degrees wide, 10 nm at their ends; they image the tip."""
-    half_angle, end = math.radians(25.0), 10e-9
-    place = (np.arange(pixels) + 0.5) * size / pixels
-    x, y = np.meshgrid(place, place)
-    r = np.hypot((x % period) - 0.5 * period, (y % period) - 0.5 * period)
-    z = height - (np.sqrt(r**2 + (end * math.tan(half_angle)) ** 2) / math.tan(half_angle) - end)
-    return nt.Topography(heights=np.maximum(z, 0.0), pixel_size=2 * (size / pixels,), name="spikes")
-
-
 def dna(
     size: float = 500e-9, length: float = 700e-9, height: float = 0.8e-9, pixels: int = 256, seed: int = 3
 ) -> nt.Topography:

@@ -94,7 +94,7 @@ def polished() -> nt.Topography:
 SURFACES: dict[str, Callable[[], nt.Topography]] = {
     **surfaces.OF_SCENE,
     "grating": lambda: nt.surface.grating(size=12e-6, pixels=384, height=100e-9),
-    "spikes": samples.spikes,
+    "spikes": lambda: nt.surface.spikes(pixels=256),
     "dna": samples.dna,
     "rough": samples.rough,
     "soft_gold": polished,

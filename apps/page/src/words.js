@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What stands in words: title, state, facts, notes, cards, tasks, help. Everything is text to the browser, never markup.
 
+import { unpack } from "./subject.js";
 import { digits } from "./units.js";
 
 export const byId = (id) => document.getElementById(id);
@@ -14,6 +15,22 @@ function download(name, text) {
   const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
   element("a", { href: address, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(address), 1000);
+}
+
+const SMALL = 56; // side of a thumbnail [pixels]
+
+// The surface of a sample, from above, by the colours of heights.
+async function thumbnail(surface) {
+  const { heights, rows, columns } = await unpack(surface), canvas = element("canvas", { width: SMALL, height: SMALL });
+  const table = getComputedStyle(document.documentElement).getPropertyValue("--heights").split(";").map((one) => one.split(",").map(Number));
+  const context = canvas.getContext("2d"), image = context.createImageData(SMALL, SMALL), low = surface.low, size = surface.step * 65535;
+  for (let at = 0; at < SMALL * SMALL; ++at) {
+    const row = Math.floor(((SMALL - 1 - Math.floor(at / SMALL)) * rows) / SMALL), column = Math.floor(((at % SMALL) * columns) / SMALL);
+    const place = ((heights[row * columns + column] - low) / size) * (table.length - 1), i = Math.min(Math.floor(place), table.length - 2);
+    image.data.set([...table[i].map((part, k) => part + (place - i) * (table[i + 1][k] - part)), 255], 4 * at);
+  }
+  context.putImageData(image, 0, 0);
+  return canvas;
 }
 
 const STATES = ["good", "hold", "bad", "bad"];
@@ -115,10 +132,11 @@ export class Words {
   }
 
   cards(current, open) {
-    const card = ({ name, title, hint, felt }) => {
+    const card = ({ name, title, hint, felt, surface }) => {
       const made = element("button", { onclick: () => { this.close(); this.ask({ do: "preset", name }); } },
         element("b", { textContent: title }), element("i", { textContent: hint }), element("small", { textContent: felt }));
       made.setAttribute("aria-current", String(title === current));
+      thumbnail(surface).then((picture) => made.prepend(picture));
       return made;
     };
     this.#sheet("c", element("h2", { textContent: "What to touch" }), element("p", {},

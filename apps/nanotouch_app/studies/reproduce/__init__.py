@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compute the figures of the paper (5, 6, 9 to 11, 16 to 19): a picture, a table, and which of its statements hold."""
+"""Compute the figures of the paper (5, 6, 9 to 11, 15 to 19): a picture, a table, and which of its statements hold."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from nanotouch_app.common import output
 from nanotouch_app.studies.reproduce import drawing
 from nanotouch_app.studies.reproduce.statement import Reproduction
 
-FIGURES = (5, 6, 9, 10, 11, 16, 17, 18, 19)
+FIGURES = (5, 6, 9, 10, 11, 15, 16, 17, 18, 19)
 
 
 def add_parser(subparsers: Any) -> None:
@@ -27,7 +27,7 @@ def add_parser(subparsers: Any) -> None:
         type=int,
         default=FIGURES,
         metavar="N",
-        help="which of 5, 6, 9 .. 11, 16 .. 19 (default: all)",
+        help="which of 5, 6, 9 .. 11, 15 .. 19 (default: all)",
     )
     output.add_options(parser)
 

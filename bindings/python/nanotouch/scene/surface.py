@@ -221,17 +221,17 @@ def dots(size: float = 500e-9, pixels: int = 512, *, count: int = 24, seed: int 
 
 
 def spikes(
-    size: float = 400e-9,
+    size: float = 6e-6,
     pixels: int = 400,
     *,
     radius: float = 8e-9,
-    height: float = 400e-9,
+    height: float = 300e-9,
     half_angle: float = 0.436,
     pitch: float = 2.12e-6,
 ) -> Topography:
     """Spikes like the tip characteriser TGT1: a square array of cones of 50 degrees with apexes of ``radius`` [m].
 
-    One of them stands in the middle of the scan.
+    One of them stands in the middle of the scan. To measure a tip, take one of them alone: a size of 400 nm.
     """
     pixel = _pixel(size, pixels)
     check_between("radius", radius, "m", above=0.0, up_to=1e-3)
