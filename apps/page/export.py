@@ -21,8 +21,9 @@ from nanotouch.manipulation.particles import polystyrene
 from nanotouch.touch import host as c_host
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.supervisor import REASONS
+from nanotouch_app.common.scenes import felt
 from nanotouch_app.live import balls, host, instrument, look, readings, relief, seen, stage
-from nanotouch_app.live.subject import PRESETS, felt, of_preset
+from nanotouch_app.live.subject import PRESETS, of_preset
 
 STEPS = 65535  # of a height in the page
 

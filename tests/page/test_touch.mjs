@@ -284,7 +284,10 @@ test("a dent of a depth, by keys alone", async () => {
     await page.keyboard.press("PageDown");
     await rests();
   }
-  for (let i = 0; i < 400 && (await seen(page, "now")).contact > 0; ++i) await page.keyboard.press("PageUp", { delay: 10 });
+  for (let i = 0; i < 400 && (await seen(page, "now")).contact > 0; ++i) {
+    await page.keyboard.press("PageUp");
+    await rests();
+  }
   await until(page, () => /deep/.test(window.nanotouch.seen.task.now));
   await page.keyboard.press("F1");
   await until(page, () => "score" in window.nanotouch.seen.task);

@@ -72,7 +72,7 @@ def test_random_plans_keep_the_bound_of_their_table(seed: int) -> None:
         assert excess(plan, table, gaps, attached) <= 1.0
 
 
-@pytest.mark.parametrize("name", scenes.PRESETS + scenes.PAPER)
+@pytest.mark.parametrize("name", scenes.LIBRARY + scenes.PAPER)
 def test_presets_keep_it_and_have_a_header(name: str) -> None:
     scene, rig = getattr(nt.presets, name)()
     plan = scene.plan()

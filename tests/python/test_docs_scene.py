@@ -14,6 +14,7 @@ from nanotouch import Demand, Rig, Scene, presets
 from nanotouch.scene import Quantity
 from nanotouch.scene.interaction import STATE_SIZE
 from nanotouch.scene.plan import ROWS
+from nanotouch_app.common import scenes as named
 from nanotouch_app.main import main
 from nanotouch_app.studies.plan import PRESETS
 
@@ -97,7 +98,7 @@ def test_laws_are_up_to_date() -> None:
 def test_costs_are_those_of_the_rows() -> None:
     """Every term of a plan has a cost of its row; all forms that presets and their neighbours come to are asked."""
     told = {(row.name, form.words): (form.name, form.cost) for row in ROWS for form in row.forms}
-    scenes = [getattr(presets, name)()[0] for name in PRESETS]
+    scenes = [named.of_preset(name)[0] for name in PRESETS]
     scenes += [Scene(tip={"height": 1e-5}, adhesion={"contact_potential": 1.0}, sample={"charge": 1e-18})]
     scenes += [Scene(medium={"kind": "liquid", "ionic_strength": 10.0, "hydration_energy": 0.01},
                      tip={"surface_potential": 0.02}, sample={"surface_potential": 0.02})]  # fmt: skip

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from nanotouch import plasticity
 from nanotouch_app import view
+from nanotouch_app.common.scenes import felt
 from nanotouch_app.live import board, cards, dented, film
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.look import LIGHT
 from nanotouch_app.live.seen import Seen
-from nanotouch_app.live.subject import PRESETS, felt, of_preset
+from nanotouch_app.live.subject import PRESETS, of_preset
 from touching import Operator, newest
 
 GOLD = plasticity.Indentation(30e-9, 77e9, 0.35e9)

@@ -9,7 +9,8 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch_app.live import samples, stage
+from nanotouch_app.common import samples
+from nanotouch_app.live import stage
 from nanotouch_app.live.hands import Device, Feel, Motion
 from nanotouch_app.live.held import Held
 from nanotouch_app.live.host import Host

@@ -10,7 +10,8 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch_app import view
-from nanotouch_app.live import film, parts, samples, tiles
+from nanotouch_app.common import samples
+from nanotouch_app.live import film, parts, tiles
 from nanotouch_app.live.subject import of_preset
 
 

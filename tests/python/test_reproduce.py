@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from nanotouch.contact import Contact
 from nanotouch_app.studies import reproduce
-from nanotouch_app.studies.reproduce import figure5, figure6, figure9, figure10, figure11, figure15, unloading
+from nanotouch_app.studies.reproduce import figure5, figure6, figure9, figure10, figure11, unloading
 from nanotouch_app.studies.reproduce.statement import Statement
 
 pytest.importorskip("matplotlib")
@@ -29,20 +29,6 @@ def statements() -> dict[int, list[Statement]]:
 def find(statements: list[Statement], start: str) -> Statement:
     (found,) = [entry for entry in statements if entry.statement.startswith(start)]
     return found
-
-
-def test_fig_15_images_the_array(statements: dict[int, list[Statement]]) -> None:
-    """Beside the surface that was scanned, and the width of a cone at half its height, h tan(half angle), with the
-    tip's radius at either side."""
-    made, ground = figure15.image(), figure15.array()
-    heights = np.asarray(made.trace.height)
-    assert find(statements[15], "the image of").number == pytest.approx(ground.height_range, rel=0.02)
-    assert find(statements[15], "the spikes stand").number == pytest.approx(figure15.PITCH.value, rel=0.03)
-    assert 0.0 < find(statements[15], "tapping").number < 4e-7  # the scene's max load
-    high = heights - heights.min() > 0.5 * ground.height_range
-    width = figure15.HEIGHT.value * math.tan(figure15.ANGLE.value)
-    pixels = 9 * math.pi * np.array([0.5 * width, 0.5 * width + 20e-9]) ** 2 / np.prod(made.pixel_size)
-    assert 0.8 * pixels[0] < high.sum() < 1.2 * pixels[1]
 
 
 def eq_11(contact: Contact, stress: float, m: float) -> tuple[float, float, float]:

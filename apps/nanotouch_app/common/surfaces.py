@@ -9,6 +9,8 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 
+from nanotouch_app.common import samples
+
 WAVES = 6  # of a gentle relief, each of another direction
 
 
@@ -45,6 +47,16 @@ def _between(z: Any, size: float, height: float, name: str) -> nt.Topography:
     return nt.Topography(heights=z, pixel_size=2 * (size / len(z),), name=name)
 
 
+def glass(width: float = 10e-6) -> nt.Topography:
+    """So much of it, flat [m]."""
+    return nt.Topography(heights=np.zeros((128, 128)), pixel_size=2 * (width / 128,), name="glass")
+
+
+def polished() -> nt.Topography:
+    """200 nm of it, flat."""
+    return nt.Topography(heights=np.zeros((512, 512)), pixel_size=2 * (200e-9 / 512,), name="polished gold")
+
+
 BUILT_IN: dict[str, Callable[[], nt.Topography]] = {
     "grating": nt.surface.grating,
     "dots": nt.surface.dots,
@@ -63,6 +75,13 @@ OF_SCENE: dict[str, Callable[[], nt.Topography]] = {
     "inas_dots": lambda: nt.surface.dots(pixels=320),
     "cell_in_liquid": cell,
     "paper_inas": nt.surface.dots,
+    "grating": lambda: nt.surface.grating(size=12e-6, pixels=384, height=100e-9),
+    "spikes": lambda: nt.surface.spikes(pixels=256),
+    "dna": samples.dna,
+    "rough": samples.rough,
+    "soft_gold": polished,
+    "latex_on_glass": glass,
+    "wire_on_glass": lambda: glass(6e-6),
 }
 """what each preset is touched on where no surface is named; the paper's other scenes: its grating"""
 

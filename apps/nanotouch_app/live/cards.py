@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import textwrap
 
+from nanotouch_app.common.scenes import ROWS as PRESETS
+from nanotouch_app.common.scenes import felt
 from nanotouch_app.live.look import SMALL, TITLE, Palette
 from nanotouch_app.live.painter import Painter
-from nanotouch_app.live.subject import PRESETS, felt
 
 Frame = tuple[float, float, float, float]
 COLUMNS, GAP, HEAD = 2, 12.0, 44.0  # [pixels]

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
-from nanotouch import presets
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Demand, Rig, Scene, Settings, read_tables
 from nanotouch.scene.plan import hertz_nanoseconds
@@ -23,7 +22,7 @@ from nanotouch.units import in_words
 
 from nanotouch_app.common import output, properties, scenes
 from nanotouch_app.common.quantity import parse_quantity
-from nanotouch_app.common.scenes import PAPER, PRESETS
+from nanotouch_app.common.scenes import PAPER, PRESETS, felt
 
 ACCURACY = "demand.relative_accuracy"
 
@@ -84,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
     if surface is not None:
         output.say("\n".join(surface.notes))
     if args.scene in PRESETS:
-        output.say(f"felt: {presets.FELT[args.scene]}")
+        output.say(f"felt: {felt(args.scene)}")
     return 0
 
 

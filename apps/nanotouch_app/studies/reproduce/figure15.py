@@ -18,7 +18,7 @@ from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reprodu
 SIZE = Parameter("side of the image", 6e-6, "m", "Sec. V, TGT-01")
 HEIGHT = Parameter("height of the spikes", 0.3e-6, "m", "Sec. V, TGT-01")
 PITCH = Parameter("pitch of the spikes", 2.12e-6, "m", "not in the text; as the characteriser is sold")
-ANGLE = Parameter("half angle of a spike", 0.436, "rad", "not in the text; as the characteriser is sold")
+ANGLE = Parameter("full angle of a spike", 0.872, "rad", "not in the text; as the characteriser is sold")
 APEX = Parameter("radius of a spike", 8e-9, "m", "not in the text; below 10 nm as it is sold")
 SET_POINT = Parameter("amplitude over the free one", 0.7, "", "not in the text")
 PIXELS = Parameter("pixels of a line, and lines", 80, "", "not in the text")
@@ -31,7 +31,7 @@ VIEW = 32.0, -62.0  # elevation and azimuth that are chosen [degrees]
 def array() -> nt.Topography:
     """The spikes, one of them in the middle."""
     return nt.surface.spikes(
-        SIZE.value, radius=APEX.value, height=HEIGHT.value, half_angle=ANGLE.value, pitch=PITCH.value
+        SIZE.value, radius=APEX.value, height=HEIGHT.value, half_angle=0.5 * ANGLE.value, pitch=PITCH.value
     )
 
 
@@ -91,7 +91,7 @@ def pitch_of(heights: Floats) -> float:
 def _force(made: Any) -> Statement:
     largest = float(np.nanmax(made.trace.peak_force))
     return Statement(
-        "tapping leaves tip and sample whole", "V", "cannot be compared", "largest force on the tip", largest, "N",
+        "tapping leaves tip and sample whole", "V", "cannot be compared", "max force on the tip", largest, "N",
         "No force is printed for the image. It is taken slowly; a fast scan presses more on the way up a spike.",
     )  # fmt: skip
 

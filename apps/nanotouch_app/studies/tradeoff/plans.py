@@ -14,7 +14,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.plots import BLUE, VERMILION, new_figure
 from numpy.typing import NDArray
 
-from nanotouch_app.common.scenes import PRESETS
+from nanotouch_app.common.scenes import LIBRARY as PRESETS
 from nanotouch_app.studies.tradeoff.drawing import Label, label, logarithmic, settle
 
 ACCURACIES = tuple(float(f"{digit}e{power}") for power in range(-1, -11, -1) for digit in (3, 1))
