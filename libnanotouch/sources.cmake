@@ -111,6 +111,7 @@ set(nanotouch_sources_scene
     scene/plastic.c
     scene/pull_off.c
     scene/refusal.c
+    scene/relaxation.c
     scene/scene.c
     scene/sliding.c
     scene/terms/capillary.c

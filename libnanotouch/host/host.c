@@ -138,7 +138,7 @@ nt_status nt_host_open(nt_session_host *host, nt_session *session)
         host->due |= NT_DUE_SLIDERS;
     }
     nt_left_look(host);
-    host->due |= host->plan.dents ? NT_DUE_DENTS : 0u;
+    host->due |= host->plan.history == NT_HISTORY_DENTS ? NT_DUE_DENTS : 0u;
     if (host->wants[0]) {
         host->wants[0] = '\0';
         (void)nt_host_ask_task(host, &(nt_host_asked){"task", host->waits, {0.0, host->seed, 0.0}});
@@ -347,7 +347,8 @@ nt_status nt_host_ask(nt_session_host *host, const nt_host_asked *asked)
     if (!strcmp(what, "say"))
         return ask_answer(host, asked->value[0]);
     if (!strcmp(what, "report")) { /* a view that has just come knows nothing */
-        host->due |= NT_DUE_WORLD | NT_DUE_SLIDERS | NT_DUE_GUIDE | (host->plan.dents ? NT_DUE_DENTS : 0u);
+        host->due |= NT_DUE_WORLD | NT_DUE_SLIDERS | NT_DUE_GUIDE;
+        host->due |= host->plan.history == NT_HISTORY_DENTS ? NT_DUE_DENTS : 0u;
         return NT_OK;
     }
     if (!strcmp(what, "release")) { /* another program leads the hand */

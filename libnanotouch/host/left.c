@@ -29,7 +29,7 @@ static void note_touch(nt_host_left *left, double time)
 
 void nt_left_see(nt_session_host *host, const nt_frame *frame)
 {
-    if (host->plan.dents && frame->contact_radius > 0.0)
+    if (host->plan.history == NT_HISTORY_DENTS && frame->contact_radius > 0.0)
         note_touch(&host->left, frame->time);
 }
 

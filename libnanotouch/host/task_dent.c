@@ -36,7 +36,7 @@ static const nt_imprint *newest(const nt_session_host *host)
 static nt_status begin(nt_session_host *host)
 {
     nt_trainer *trainer = &host->trainer;
-    if (!host->plan.dents)
+    if (host->plan.history != NT_HISTORY_DENTS)
         return nt_host_refuse_filled(host, "task {name}: this sample keeps no dents; lay {preset}",
                                      (const nt_figure[]){{"name", 0.0, NULL, trainer->task->about.name},
                                                          {"preset", 0.0, NULL, trainer->task->about.preset},

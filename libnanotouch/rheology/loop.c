@@ -11,10 +11,13 @@
 #include "core/problem.h"
 #include "core/variants.h"
 #include "nanotouch/viscoelastic_loop.h"
+#include "rheology/loop.h"
 #include "rheology/springs.h"
 
 #define FLOOR                                                                                                          \
     1e-25 /* what is added and taken away leaves multiples of 1e-41 m: no denormal number, which would be slow */
+
+#define SAME_ARMS 1e-12 /* of exp(-period/tau) */
 
 static const nt_field fields[] = {
     NT_FIELD(nt_viscoelastic_demand, period, "s", 1e-7, 1.0, "of a tick"),
@@ -57,6 +60,12 @@ static nt_status check(const nt_viscoelastic *contact, const nt_viscoelastic_dem
 nt_status nt_viscoelastic_bed_make(const nt_viscoelastic *contact, const nt_viscoelastic_demand *demand,
                                    nt_viscoelastic_bed *bed, nt_problem *problem)
 {
+    return nt_viscoelastic_bed_graded(contact, demand, 1.0, bed, problem);
+}
+
+nt_status nt_viscoelastic_bed_graded(const nt_viscoelastic *contact, const nt_viscoelastic_demand *demand,
+                                     double grading, nt_viscoelastic_bed *bed, nt_problem *problem)
+{
     nt_spectrum spectrum;
     nt_status status = check(contact, demand, problem);
     if (status != NT_OK)
@@ -82,15 +91,18 @@ nt_status nt_viscoelastic_bed_make(const nt_viscoelastic *contact, const nt_visc
     }
     const nt_profile profile = nt_profile_make(&contact->shape, contact->thickness);
     bed->springs = contact->shape.kind == NT_SHAPE_PUNCH ? 1 : demand->springs;
-    nt_springs_place(&profile, demand->max_indentation, bed->springs, bed->depth, bed->weight);
+    nt_springs_place(&profile, demand->max_indentation, grading, bed->springs, bed->depth, bed->weight);
     return NT_OK;
 }
 
-/* Relaxes z of the first springs; held: Sum E_k z + E_inf u, their force if they stayed where they are. */
-NT_VARIANTS static void relax(const nt_viscoelastic_bed *bed, nt_viscoelastic_state *state, int count, double *held)
+/* Relaxes z of the springs that were touched; held: Sum E_k z + E_inf u, their force if they stayed where they are. */
+NT_VARIANTS static void relax(const nt_viscoelastic_bed *bed, nt_viscoelastic_state *state, double *held)
 {
+    const int count = state->touched;
     for (int i = 0; i < count; i++)
         held[i] = bed->equilibrium_modulus * state->u[i];
+    for (int i = count; i < bed->springs; i++)
+        held[i] = 0.0;
     for (int k = 0; k < bed->arms; k++) {
         const double decay = bed->decay[k], modulus = bed->moduli[k];
         double *restrict z = state->z[k];
@@ -133,20 +145,93 @@ NT_VARIANTS static void follow(const nt_viscoelastic_bed *bed, nt_viscoelastic_s
     }
 }
 
+void nt_viscoelastic_begin(const nt_viscoelastic_bed *bed, nt_viscoelastic_state *state, double *held)
+{
+    relax(bed, state, held);
+}
+
+NT_VARIANTS nt_law_value nt_viscoelastic_at(const nt_viscoelastic_bed *bed, const nt_viscoelastic_state *state,
+                                            const double *held, double indentation)
+{
+    const double A = bed->modulus_over_period;
+    double forces[NT_LANES] = {0.0}, reached[NT_LANES] = {0.0};
+    if (!(indentation > 0.0) && state->touched == 0)
+        return (nt_law_value){0.0 * indentation, 0.0, 0.0, 0.0};
+    for (int start = 0; start < bed->springs; start += NT_LANES) {
+        const int count = nt_lanes_from(start, bed->springs);
+        const double *depth = bed->depth + start, *u = state->u + start, *w = bed->weight + start;
+        const double *f = held + start;
+        for (int j = 0; j < count; j++) {
+            const double force = f[j] + A * (indentation - depth[j] - u[j]);
+            forces[j] += force > 0.0 ? w[j] * force : 0.0;
+            reached[j] += force > 0.0 ? w[j] : 0.0;
+        }
+    }
+    const double width = nt_lanes_sum(reached); /* 2 a */
+    return (nt_law_value){
+        .U = 0.0, .F = bed->factor * nt_lanes_sum(forces), .k = bed->factor * A * width, .a = 0.5 * width};
+}
+
+void nt_viscoelastic_end(const nt_viscoelastic_bed *bed, nt_viscoelastic_state *state, double *held, double indentation)
+{
+    while (state->touched < bed->springs && bed->depth[state->touched] < indentation)
+        state->touched++;
+    state->indentation = indentation;
+    move(bed, state, state->touched, held);
+    follow(bed, state, state->touched, held);
+}
+
 nt_status nt_viscoelastic_advance(const nt_viscoelastic_bed *bed, nt_viscoelastic_state *state, double indentation)
 {
-    double way[NT_LOOP_SPRINGS];
+    double held[NT_LOOP_SPRINGS];
     if (!isfinite(indentation))
         return NT_E_NOT_FINITE;
     if (indentation > bed->max_indentation)
         return NT_E_RANGE;
-    while (state->touched < bed->springs && bed->depth[state->touched] < indentation)
-        state->touched++;
-    state->indentation = indentation;
-    relax(bed, state, state->touched, way);
-    move(bed, state, state->touched, way);
-    follow(bed, state, state->touched, way);
+    nt_viscoelastic_begin(bed, state, held);
+    nt_viscoelastic_end(bed, state, held, indentation);
     return NT_OK;
+}
+
+/* Do both follow the same times? */
+static int has_same_arms(const nt_viscoelastic_bed *a, const nt_viscoelastic_bed *b)
+{
+    int same = a->arms == b->arms;
+    for (int k = 0; k < a->arms && same; k++)
+        same = fabs(a->decay[k] - b->decay[k]) <= SAME_ARMS;
+    return same;
+}
+
+void nt_viscoelastic_carry(const nt_viscoelastic_bed *from, const nt_viscoelastic_state *state,
+                           const nt_viscoelastic_bed *to, nt_viscoelastic_state *carried)
+{
+    nt_viscoelastic_state made = {.touched = 0};
+    const int last = from ? state->touched - 1 : -1, keeps = from && has_same_arms(from, to);
+    for (int i = 0, j = 0; i < to->springs && last >= 0 && to->depth[i] <= from->depth[last]; i++) {
+        while (j < last && from->depth[j + 1] < to->depth[i])
+            j++;
+        const int next = j < last ? j + 1 : j;
+        const double apart = from->depth[next] - from->depth[j];
+        const double part = apart > 0.0 ? fmax((to->depth[i] - from->depth[j]) / apart, 0.0) : 0.0;
+        made.u[i] = state->u[j] + part * (state->u[next] - state->u[j]);
+        for (int k = 0; k < to->arms && keeps; k++)
+            made.z[k][i] = state->z[k][j] + part * (state->z[k][next] - state->z[k][j]);
+        made.touched = i + 1;
+    }
+    made.pressed = state->pressed;
+    made.indentation = state->indentation;
+    *carried = made;
+}
+
+void nt_viscoelastic_rest(const nt_viscoelastic_bed *bed, nt_viscoelastic_state *state, double indentation)
+{
+    nt_viscoelastic_state made = {.indentation = indentation};
+    while (made.touched < bed->springs && bed->depth[made.touched] < indentation) {
+        made.u[made.touched] = indentation - bed->depth[made.touched];
+        made.touched++;
+    }
+    made.pressed = made.touched;
+    *state = made;
 }
 
 double nt_viscoelastic_stored(const nt_viscoelastic_bed *bed, const nt_viscoelastic_state *state)

@@ -17,7 +17,8 @@ static const nt_kernel *const kernels[NT_RHEOLOGY_COUNT] = {
 };
 
 static const nt_field fields[] = {
-    FIELD(kind, "power_law|standard_linear_solid|prony", 0.0, NT_RHEOLOGY_COUNT - 1.0, "how the modulus relaxes"),
+    FIELD(kind, "elastic|power_law|standard_linear_solid|prony", NT_RHEOLOGY_POWER_LAW, NT_RHEOLOGY_COUNT - 1.0,
+          "how the modulus relaxes"),
     FIELD(modulus, "Pa", 1e-3, 1e13, "of a power law, Young's modulus E_1 at the reference time"),
     FIELD(exponent, "", 0.0, 0.85, "of a power law, beta: 0 is elastic"),
     FIELD(reference_time, "s", 1e-9, 1e9, "of a power law, t_0"),

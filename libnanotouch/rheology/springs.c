@@ -30,17 +30,27 @@ long nt_springs_workspace(int parameters)
     return (long)SPRINGS * (ROWS + NT_ARMS + (long)parameters * (NT_ARMS + 2));
 }
 
-void nt_springs_place(const nt_profile *profile, double deepest, int count, double *depth, double *weight)
+/* Where the slope has come to a value. */
+static double depth_at(const nt_profile *profile, double deepest, double slope)
+{
+    double low = 0.0, high = deepest;
+    for (int j = 0; j < HALVINGS; j++) {
+        const double middle = 0.5 * (low + high);
+        *(nt_profile_at(profile, middle).slope < slope ? &low : &high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+void nt_springs_place(const nt_profile *profile, double deepest, double grading, int count, double *depth,
+                      double *weight)
 {
     const double whole = nt_profile_at(profile, deepest).slope;
+    double from = 0.0;
     for (int i = 0; i < count; i++) {
-        double low = 0.0, high = profile->kind == NT_SHAPE_PUNCH ? 0.0 : deepest;
-        for (int j = 0; j < HALVINGS; j++) {
-            const double middle = 0.5 * (low + high);
-            *(nt_profile_at(profile, middle).slope < whole * (i + 0.5) / count ? &low : &high) = middle;
-        }
-        depth[i] = 0.5 * (low + high);
-        weight[i] = whole / count;
+        const double to = i + 1 < count ? whole * pow((i + 1.0) / count, grading) : whole;
+        depth[i] = profile->kind == NT_SHAPE_PUNCH ? 0.0 : depth_at(profile, deepest, 0.5 * (from + to));
+        weight[i] = to - from;
+        from = to;
     }
 }
 
@@ -54,7 +64,8 @@ static springs laid_out(const nt_run *run, double deepest, double *workspace)
     of.s = of.place + ROWS;
     of.by = of.s + of.width;
     memset(workspace, 0, sizeof(double) * (size_t)nt_springs_workspace(of.parameters));
-    nt_springs_place(&run->profile, fmin(deepest, run->profile.deepest), of.count, of.place[DEPTH], of.place[WEIGHT]);
+    nt_springs_place(&run->profile, fmin(deepest, run->profile.deepest), 1.0, of.count, of.place[DEPTH],
+                     of.place[WEIGHT]);
     return of;
 }
 

@@ -5,9 +5,10 @@
 
 #include "rheology/run.h"
 
-/* Springs in the middle of equal parts of the contact radius (of the stiffness on a layer): the indentations [m] that
- * reach them, and their shares of the stiffness over E [m]. */
-void nt_springs_place(const nt_profile *profile, double deepest, int count, double *depth, double *weight);
+/* Springs in the middle of parts of the contact radius (of the stiffness on a layer) that end at (i/count)^grading: the
+ * indentations [m] that reach them, and their shares of the stiffness over E [m]. */
+void nt_springs_place(const nt_profile *profile, double deepest, double grading, int count, double *depth,
+                      double *weight);
 
 /* Doubles that a history by springs needs. */
 long nt_springs_workspace(int parameters);

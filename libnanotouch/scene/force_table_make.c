@@ -236,8 +236,10 @@ nt_status nt_force_table_make(nt_force_table *table, nt_force_piece *pieces, int
         m.accuracy = fmax(SHARE * plan->accuracy, FINEST);
     if (plan->surface)
         return refuse(problem, NT_PROBLEM_FORCE_TABLE_SURFACE, NT_E_RANGE);
-    if (plan->dents)
+    if (plan->history == NT_HISTORY_DENTS)
         return refuse(problem, NT_PROBLEM_FORCE_TABLE_DENTS, NT_E_RANGE);
+    if (plan->history == NT_HISTORY_RELAXES)
+        return refuse(problem, NT_PROBLEM_FORCE_TABLE_RELAXES, NT_E_RANGE);
     measure(&m);
     const float deepest = (float)-plan->largest_indentation;
     const double largest = fabs(truth(&m, (double)deepest).F);

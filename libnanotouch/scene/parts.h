@@ -89,8 +89,9 @@ double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, const nt_con
 double nt_plan_effective_modulus(const nt_plan *plan, double youngs_modulus);
 /* The contact of a scene at the corner plan->corner of what its surface is made of. */
 void nt_plan_take_properties(nt_plan *plan, const nt_scene *scene);
-/* The scene as it is computed: with the modulus and adhesion of that corner 0, and the z0 of w. */
-nt_scene nt_plan_scene_over(const nt_scene *scene, const nt_properties *properties);
+/* The scene as it is computed: with the modulus of a sample that relaxes, modulus and adhesion of that corner 0, and
+ * the z0 of w. */
+nt_scene nt_plan_scene_over(const nt_plan_inputs *inputs);
 /* Facts at all corners: the worst of them, with the contact of corner 0. */
 nt_status nt_plan_over_surface(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 /* The contact at a place (NULL: the plan's own), at a radius, at a corner of least and most. */
@@ -298,6 +299,17 @@ nt_status nt_plan_choose(const nt_plan_options *options, double accuracy, double
 int nt_plan_is_alone(const nt_plan_options *options, const nt_plan_choice *choice);
 /* The plan has it. */
 void nt_plan_take(nt_plan *plan, const nt_plan_options *options, const nt_plan_choice *choice);
+
+/* relaxation.c: whether time matters, and with which moduli; bed and bound come with nt_plan_relaxation_of. */
+nt_plan_relaxation nt_plan_relaxation_before(const nt_plan_inputs *inputs);
+/* What goes with a sample that relaxes is contact alone. NT_E_RANGE with what does not. */
+nt_status nt_plan_check_relaxation(const nt_plan_inputs *inputs, nt_problem *problem);
+/* Takes the springs that keep the demand, of a plan with everything else decided. */
+nt_status nt_plan_relaxation_of(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
+/* How deep a load held for range.duration presses a sample that relaxes [m], and its stiffness there over a period; of
+ * any other plan 0 [N/m]. */
+double nt_plan_slow_depth(const nt_plan *plan, double load);
+double nt_plan_quick_stiffness(const nt_plan *plan, double indentation);
 
 /* plastic.c: a sample that keeps dents, if the scene wants one. NT_E_RANGE with what does not go with it. */
 nt_status nt_plan_dents_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);

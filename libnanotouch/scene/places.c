@@ -19,9 +19,12 @@ double nt_plan_effective_modulus(const nt_plan *plan, double youngs_modulus)
     return 1.0 / (plan->tip_compliance + plan->sample_factor / youngs_modulus);
 }
 
-nt_scene nt_plan_scene_over(const nt_scene *scene, const nt_properties *properties)
+nt_scene nt_plan_scene_over(const nt_plan_inputs *inputs)
 {
-    nt_scene over = *scene;
+    const nt_properties *properties = inputs->properties;
+    nt_scene over = *inputs->scene;
+    if (over.rheology.kind != NT_RHEOLOGY_ELASTIC)
+        over.sample.youngs_modulus = nt_plan_relaxation_before(inputs).modulus;
     if (properties && has(&properties->youngs_modulus))
         over.sample.youngs_modulus = properties->youngs_modulus.height_minimum;
     if (properties && has(&properties->work_of_adhesion)) {

@@ -37,6 +37,8 @@ static nt_status check(const nt_plan_inputs *inputs, const nt_demand *demand, nt
         rig.probe = *inputs->probe;
         status = nt_rig_check(&rig, problem);
     }
+    if (status == NT_OK)
+        status = nt_plan_check_relaxation(inputs, problem);
     if (status == NT_OK && inputs->radii && !is_of(&inputs->radii->ratio, inputs->surface))
         status = NT_E_ARGUMENT;
     if (status == NT_OK && inputs->properties && !is_of(&inputs->properties->youngs_modulus, inputs->surface))
@@ -104,7 +106,7 @@ static nt_status begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *
     plan->relief.room = inputs->room;
     plan->ratio = 1.0;
     plan->probe_noise = inputs->probe ? nt_probe_force_noise(inputs->probe) : 0.0;
-    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
+    const nt_scene scene = nt_plan_scene_over(inputs);
     status = nt_plan_check_distance(&scene, problem);
     if (status == NT_OK)
         status = nt_plan_tabulate(plan, &scene, problem);
@@ -223,7 +225,7 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_deform_tried *t
 /* That a plan was begun with. */
 static nt_scene scene_of(const nt_plan *plan, const nt_plan_inputs *inputs)
 {
-    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
+    const nt_scene scene = nt_plan_scene_over(inputs);
     return plan->drops_tails ? nt_plan_scene_without_tails(&scene) : scene;
 }
 
@@ -284,6 +286,8 @@ nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem
         status = nt_plan_check_plastic(plan, &scene, problem);
     if (status == NT_OK)
         status = nt_plan_friction_of(plan, inputs, problem);
+    if (status == NT_OK)
+        status = nt_plan_relaxation_of(plan, inputs, problem);
     if (status != NT_OK)
         return status;
     finish(plan, scene.range.maximum_load);

@@ -112,7 +112,7 @@ nt_status nt_plan_dents_of(nt_plan *plan, const nt_scene *scene, nt_problem *pro
         return status;
     const double a = nt_indentation_radius_at_load(&plan->indentation, scene->range.maximum_load);
     const nt_first_loading groove = nt_indentation_first(&plan->indentation, SQRT2 * a);
-    plan->dents = 1;
+    plan->history = NT_HISTORY_DENTS;
     plan->maximum_stiffness = fmax(plan->maximum_stiffness, 2.0 * plan->indentation.effective_modulus * SQRT2 * a);
     plan->largest_indentation = fmax(plan->largest_indentation, groove.indentation);
     plan->bound.force_error = NAN; /* beside finite elements it errs by a tenth (docs/indentation.md) */
@@ -123,7 +123,7 @@ nt_status nt_plan_check_plastic(const nt_plan *plan, const nt_scene *scene, nt_p
 {
     int is_tip = 0;
     const double limit = PLASTIC * weaker(scene, &is_tip);
-    if (plan->dents || plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF || !(limit > 0.0) ||
+    if (plan->history == NT_HISTORY_DENTS || plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF || !(limit > 0.0) ||
         !(largest_mean(plan, scene) > limit))
         return NT_OK;
     const nt_field *field = nt_scene_field("range.maximum_load");
@@ -138,11 +138,11 @@ void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene)
                                         "peak pressure at the largest load, where the tip begins to yield"};
     int is_tip = 0;
     const double limit = ONSET * weaker(scene, &is_tip);
-    if (plan->dents)
+    if (plan->history == NT_HISTORY_DENTS)
         nt_plan_add_warning(plan, (nt_plan_warning){"a sample that keeps dents (force within about a tenth of finite "
                                                     "elements, without a bound) yields from",
                                                     "N", nt_indentation_yield_load(&plan->indentation), NAN});
-    if (plan->dents && !is_tip)
+    if (plan->history == NT_HISTORY_DENTS && !is_tip)
         return;
     const double peak = peak_pressure(plan, scene);
     if (plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF && limit > 0.0 && peak > limit)

@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_scene, path, __VA_ARGS__)
+#define FIELD_NAMED(name, path, ...) NT_FIELD_NAMED(name, nt_scene, path, __VA_ARGS__)
 #define CHOICE(path, choices, last, doc) FIELD(path, choices, 0.0, last, doc)
 #define NO_YES "no|yes"
 #define OF_TERM(name, unit, least, most, usual, doc) , FIELD(medium.name, unit, least, most, doc)
@@ -71,6 +72,31 @@ static const nt_field scene_fields[] = {
     FIELD(range.speed, "m/s", 0.0, 1.0, "fastest approach"),
     FIELD(range.viscosity, "Pa s", 0.0, 1e3, "viscosity of the medium, for the drag that a plan leaves out"),
     FIELD(range.warming, "K", 0.0, 100.0, "the temperature may move by this either way"),
+    FIELD(range.duration, "s", 1e-3, 1e6, "longest touch, over which the memory of a sample that relaxes counts"),
+    CHOICE(rheology.kind, "elastic|power_law|standard_linear_solid|prony", NT_RHEOLOGY_COUNT - 1.0,
+           "how the sample's modulus relaxes; but for elastic in place of sample.youngs_modulus"),
+    CHOICE(rheology.arm_count, "0|1|2|3|4|5|6|7|8", NT_RHEOLOGY_ARMS,
+           "of a prony series, how many of these arms it has"),
+    FIELD(rheology.modulus, "Pa", 1e-3, 1e13, "of a power law, Young's modulus E_1 at the reference time"),
+    FIELD(rheology.exponent, "", 0.0, 0.85, "of a power law, beta: 0 is elastic"),
+    FIELD(rheology.reference_time, "s", 1e-9, 1e9, "of a power law, t_0"),
+    FIELD(rheology.equilibrium_modulus, "Pa", 0.0, 1e13, "of arms, Young's modulus E_inf that is left in the end"),
+    FIELD_NAMED("rheology.arm_modulus_1", rheology.arm_moduli[0], "Pa", 0.0, 1e13, "E_1 of an arm"),
+    FIELD_NAMED("rheology.arm_modulus_2", rheology.arm_moduli[1], "Pa", 0.0, 1e13, "E_2 of an arm"),
+    FIELD_NAMED("rheology.arm_modulus_3", rheology.arm_moduli[2], "Pa", 0.0, 1e13, "E_3 of an arm"),
+    FIELD_NAMED("rheology.arm_modulus_4", rheology.arm_moduli[3], "Pa", 0.0, 1e13, "E_4 of an arm"),
+    FIELD_NAMED("rheology.arm_modulus_5", rheology.arm_moduli[4], "Pa", 0.0, 1e13, "E_5 of an arm"),
+    FIELD_NAMED("rheology.arm_modulus_6", rheology.arm_moduli[5], "Pa", 0.0, 1e13, "E_6 of an arm"),
+    FIELD_NAMED("rheology.arm_modulus_7", rheology.arm_moduli[6], "Pa", 0.0, 1e13, "E_7 of an arm"),
+    FIELD_NAMED("rheology.arm_modulus_8", rheology.arm_moduli[7], "Pa", 0.0, 1e13, "E_8 of an arm"),
+    FIELD_NAMED("rheology.relaxation_time_1", rheology.relaxation_times[0], "s", 0.0, 1e9, "tau_1 of that arm"),
+    FIELD_NAMED("rheology.relaxation_time_2", rheology.relaxation_times[1], "s", 0.0, 1e9, "tau_2 of that arm"),
+    FIELD_NAMED("rheology.relaxation_time_3", rheology.relaxation_times[2], "s", 0.0, 1e9, "tau_3 of that arm"),
+    FIELD_NAMED("rheology.relaxation_time_4", rheology.relaxation_times[3], "s", 0.0, 1e9, "tau_4 of that arm"),
+    FIELD_NAMED("rheology.relaxation_time_5", rheology.relaxation_times[4], "s", 0.0, 1e9, "tau_5 of that arm"),
+    FIELD_NAMED("rheology.relaxation_time_6", rheology.relaxation_times[5], "s", 0.0, 1e9, "tau_6 of that arm"),
+    FIELD_NAMED("rheology.relaxation_time_7", rheology.relaxation_times[6], "s", 0.0, 1e9, "tau_7 of that arm"),
+    FIELD_NAMED("rheology.relaxation_time_8", rheology.relaxation_times[7], "s", 0.0, 1e9, "tau_8 of that arm"),
 };
 
 nt_scene nt_scene_defaults(void)
@@ -99,8 +125,10 @@ nt_scene nt_scene_defaults(void)
                    .hydration_length = 0.3e-9,
                    .brush_spacing = 10e-9 NT_TERM_FIELDS(USUAL)},
         .adhesion = {.work_of_adhesion = 0.10, .equilibrium_distance = 0.2e-9, .hamaker_constant = 1e-19},
-        .range = {.minimum_gap = -1e-3, .maximum_load = 0.4e-6, .viscosity = 1.8e-5},
+        .range = {.minimum_gap = -1e-3, .maximum_load = 0.4e-6, .viscosity = 1.8e-5, .duration = 100.0},
+        .rheology = nt_rheology_defaults(),
     };
+    scene.rheology.kind = NT_RHEOLOGY_ELASTIC;
     return scene;
 }
 
@@ -174,7 +202,9 @@ nt_status nt_scene_check(const nt_scene *scene, nt_problem *problem)
 {
     int count = 0;
     const nt_field *fields = nt_scene_fields(&count);
-    const nt_status status = nt_field_check(fields, count, scene, problem);
+    nt_status status = nt_field_check(fields, count, scene, problem);
+    if (status == NT_OK && scene->rheology.kind != NT_RHEOLOGY_ELASTIC)
+        status = nt_rheology_check(&scene->rheology, problem);
     if (status != NT_OK)
         return status;
     const nt_medium *medium = &scene->medium;

@@ -136,7 +136,7 @@ static nt_status take(nt_plan *plan, const errors *of, nt_problem *problem)
     const nt_plan_term *contact = &plan->terms[NT_PLAN_CONTACT];
     term->form = NT_FORM_ON;
     term->words = "sticks and slips";
-    term->bound = plan->deformation.count > 0 || plan->dents ? (double)NAN : of->computed;
+    term->bound = plan->deformation.count > 0 || plan->history == NT_HISTORY_DENTS ? (double)NAN : of->computed;
     term->cost = contact->cost + cost_step[0] + asks_load * cost_load[0];
     term->latency = contact->latency + cost_step[1] + asks_load * cost_load[1];
     plan->cost += term->cost;
@@ -152,7 +152,7 @@ static nt_status take(nt_plan *plan, const errors *of, nt_problem *problem)
 
 nt_status nt_plan_friction_of(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
-    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
+    const nt_scene scene = nt_plan_scene_over(inputs);
     make_law(plan, &scene, inputs->probe);
     const nt_friction *law = &plan->friction.law;
     plan->friction.term = (nt_plan_term){.name = "friction", .title = "friction", .words = "left out"};
@@ -164,7 +164,7 @@ nt_status nt_plan_friction_of(nt_plan *plan, const nt_plan_inputs *inputs, nt_pr
     const errors found = errors_of(plan, scene.range.maximum_load);
     plan->friction.term.force = found.largest;
     plan->friction.term.bound = found.left_out;
-    if (plan->deformation.count == 0 && !plan->dents && found.left_out <= plan->accuracy)
+    if (plan->deformation.count == 0 && plan->history != NT_HISTORY_DENTS && found.left_out <= plan->accuracy)
         return NT_OK;
     return take(plan, &found, problem);
 }
@@ -175,7 +175,7 @@ void nt_plan_warn_friction(nt_plan *plan)
     const double demanded = plan->accuracy;
     if (term->form == NT_FORM_OFF)
         return;
-    if (isnan(term->bound) && !plan->dents)
+    if (isnan(term->bound) && plan->history != NT_HISTORY_DENTS)
         nt_plan_add_warning(plan, (nt_plan_warning){"friction on a sample that deforms, whose bound is not known: its "
                                                     "largest force about",
                                                     "N", term->force, NAN});

@@ -116,6 +116,16 @@ static void check_deformed(nt_plan *plan)
                                               "", rigid, demanded});
 }
 
+/* A sample that relaxes has springs of the tip's own radius everywhere. */
+static void check_relaxation(nt_plan *plan)
+{
+    const double demanded = plan->accuracy;
+    if (plan->history == NT_HISTORY_RELAXES && demanded > 0.0 && plan->bound.force_error > demanded * ROUNDED)
+        nt_plan_add_warning(plan, (nt_plan_warning){"error of a sample that relaxes, more than demanded: it has the "
+                                                    "tip's own radius at every place",
+                                                    "", plan->bound.force_error, demanded});
+}
+
 /* Nearer than fold_distance to a fold the bound does not hold. Where strong laws move the folds of a soft sample by
  * more than their own gap, that is the whole of what is felt. */
 static void check_folds(nt_plan *plan)
@@ -152,6 +162,7 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     check_surface(plan);
     nt_plan_warn_flank(plan);
     check_deformed(plan);
+    check_relaxation(plan);
     check_folds(plan);
     check_layer(plan, scene);
     nt_plan_warn_friction(plan);

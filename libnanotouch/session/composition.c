@@ -90,6 +90,7 @@ static nt_status make_terrain(nt_composition *made, const nt_composition *before
     wanted.scene.range.maximum_load = setup->settings.limits.force;
     wanted.demand = setup->demand;
     wanted.probe = &setup->rig.probe;
+    wanted.period = made->touch.period;
     wanted.map = setup->map;
     wanted.dilated = setup->dilated;
     wanted.surface = setup->surface;

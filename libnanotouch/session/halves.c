@@ -78,7 +78,7 @@ static nt_status open_half(nt_session *session, nt_half half, nt_problem *proble
     } else if (!choice.backend) {
         status = nt_sim_slave_init(&session->sim.slave, &simulated);
         if (status == NT_E_UNSUPPORTED)
-            (void)nt_problem_set(problem, "tapping on a sample that keeps dents", "no|yes", 1.0, 0.0, 0.0);
+            (void)nt_problem_set(problem, "tapping on a sample that keeps dents or relaxes", "no|yes", 1.0, 0.0, 0.0);
         choice = (nt_hal_choice){nt_sim_slave_backend(), &session->sim.slave};
     }
     nt_hal *hal = is_master ? &session->master : &session->slave;
@@ -204,7 +204,8 @@ static nt_status find_master(nt_session *session, nt_problem *problem)
 nt_status nt_session_check_bound(const nt_session *session, const nt_composition *composition, nt_problem *problem)
 {
     const nt_plan *plan = nt_terrain_plan(composition->terrain);
-    if (!(session->slave.capabilities.can & NT_IS_REAL) || plan->dents || isfinite(plan->bound.force_error))
+    if (!(session->slave.capabilities.can & NT_IS_REAL) || plan->history == NT_HISTORY_DENTS ||
+        isfinite(plan->bound.force_error))
         return NT_OK;
     return nt_problem_refuse(problem, (nt_problem){.code = NT_PROBLEM_BOUND_OF_REAL_SLAVE});
 }

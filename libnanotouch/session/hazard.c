@@ -54,7 +54,7 @@ static double unseen_indentation(const nt_plan *plan, double free_force)
         else
             shallow = middle;
     }
-    return deep;
+    return fmax(deep, nt_plan_slow_depth(plan, 2.0 * free_force));
 }
 
 /* U falls by this where adhesion takes hold [J]. */
@@ -115,7 +115,8 @@ static double deepest_under(const nt_plan *plan, double force)
 {
     const nt_well sharp = {.plan = plan, .place = place_of(plan, plan->least.radius, 0)};
     const nt_well blunt = {.plan = plan, .place = place_of(plan, plan->most.radius, 0)};
-    return -fmin(nt_well_gap_of_force(&sharp, force, 0.0), nt_well_gap_of_force(&blunt, force, 0.0));
+    const double deepest = -fmin(nt_well_gap_of_force(&sharp, force, 0.0), nt_well_gap_of_force(&blunt, force, 0.0));
+    return fmax(deepest, nt_plan_slow_depth(plan, force));
 }
 
 /* A tip that slides from the softest and sharpest place to the hardest and bluntest one is lifted by this [m]. */
@@ -143,6 +144,13 @@ static double stiffness_over(const nt_well *w, double force, double way)
     return down < start ? (nt_well_law(w, down).F - first) / (start - down) : 0.0;
 }
 
+/* A sample that has relaxed under that force and is pressed on within a period: its stiffness at the end, above that on
+ * the mean; 0 of any other [N/m]. */
+static double quick_over(const nt_plan *plan, double force, double way)
+{
+    return nt_plan_quick_stiffness(plan, nt_plan_slow_depth(plan, force) + way);
+}
+
 /* The stiffest place under the stiffest lever: as far as the loop goes on past the limit, and from there as each
  * failure does. */
 static void add_stiffness(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig, const nt_settings *settings)
@@ -153,10 +161,12 @@ static void add_stiffness(nt_hazard *hazard, const nt_plan *plan, const nt_rig *
     const double reckoned = spring / (1.0 + spring / hazard->stiffness), moved = still.motion + still.ringing;
     const double begins = still.force - moved - still.snap_in, way = moved / reckoned;
     hazard->stiffness = fmax(hazard->stiffness, stiffness_over(&hard, begins, way));
+    hazard->stiffness = fmax(hazard->stiffness, quick_over(plan, begins, way));
     const double ends = begins + way * spring / (1.0 + spring / hazard->stiffness);
     for (int i = 0; i < NT_FAILURES; ++i)
         if (isfinite(still.failure[i]))
-            hazard->failing[i] = stiffness_over(&hard, ends, still.failure[i] / reckoned);
+            hazard->failing[i] = fmax(stiffness_over(&hard, ends, still.failure[i] / reckoned),
+                                      quick_over(plan, ends, still.failure[i] / reckoned));
 }
 
 /* What the sample does to a tip that stands still while the tare is taken, as near as the frame may drift meanwhile. A
@@ -190,7 +200,7 @@ double nt_hazard_relief(const nt_plan *plan)
 {
     const nt_surface *surface = plan->surface;
     double low = HUGE_VAL, high = -HUGE_VAL;
-    if (!surface || !surface->coefficients || plan->dents)
+    if (!surface || !surface->coefficients || plan->history == NT_HISTORY_DENTS)
         return HUGE_VAL;
     for (long i = 0; i < surface->nx * surface->ny; ++i) {
         low = fmin(low, surface->coefficients[i]);

@@ -305,7 +305,9 @@ const nt_capabilities *nt_session_capabilities(const nt_session *session, nt_hal
 }
 const nt_dents *nt_session_dents(const nt_session *session)
 {
-    return session->simulates[NT_HALF_SLAVE] && session->sim.slave.plan->dents ? &session->sim.slave.dents : NULL;
+    return session->simulates[NT_HALF_SLAVE] && session->sim.slave.plan->history == NT_HISTORY_DENTS
+               ? &session->sim.slave.dents
+               : NULL;
 }
 const nt_session_setup *nt_session_setup_of(const nt_session *session)
 {

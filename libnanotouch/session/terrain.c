@@ -149,7 +149,8 @@ static nt_status make_plan(nt_terrain *terrain, const nt_terrain_setup *setup, n
                              .probe = setup->probe,
                              .surface = terrain->surface,
                              .radii = terrain->radii,
-                             .properties = setup->properties};
+                             .properties = setup->properties,
+                             .period = setup->period};
     nt_maugis_bank_options options;
     if (terrain->radii) {
         inputs.room = terrain->own.room = calloc(NT_DEFORM_RADII, sizeof *inputs.room);

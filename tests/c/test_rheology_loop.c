@@ -118,7 +118,7 @@ static double draw(nt_random *random, double low, double high)
 static nt_viscoelastic any_contact(nt_random *random)
 {
     nt_viscoelastic made = nt_viscoelastic_defaults();
-    made.rheology.kind = (nt_rheology_kind)(int)draw(random, 0.0, 2.999);
+    made.rheology.kind = (nt_rheology_kind)(int)draw(random, 1.0, 3.999);
     made.rheology.exponent = draw(random, 0.0, 0.8);
     made.shape.kind = (nt_shape_kind)(int)draw(random, 0.0, 3.999);
     made.shape.half_angle = draw(random, 0.2, 1.2);

@@ -159,7 +159,7 @@ static void what_has_no_table_is_refused(void **state)
     assert_int_equal(nt_force_table_make(&table, pieces, NT_FORCE_PIECES, &over, &problem), NT_E_RANGE);
     assert_int_equal(problem.code, NT_PROBLEM_FORCE_TABLE_SURFACE);
     over.surface = NULL;
-    over.dents = 1;
+    over.history = NT_HISTORY_DENTS;
     assert_int_equal(nt_force_table_make(&table, pieces, NT_FORCE_PIECES, &over, &problem), NT_E_RANGE);
     assert_int_equal(problem.code, NT_PROBLEM_FORCE_TABLE_DENTS);
     assert_int_equal(nt_force_table_make(&table, pieces, 0, &plan, &problem), NT_E_ARGUMENT);

@@ -215,7 +215,7 @@ static void assert_untouched(const nt_sim_slave *slave, const nt_plan *plan, con
     const nt_pose pose = {slave->x, slave->y, truth->tip_height};
     const nt_interaction_state never = {0};
     nt_interaction_value planned = {.U = 0.0};
-    if (!plan->dents)
+    if (plan->history != NT_HISTORY_DENTS)
         planned = nt_interaction_eval(plan, &never, &pose);
     const double off[] = {truth->tip_force[NT_X] - planned.Fx, truth->tip_force[NT_Y] - planned.Fy,
                           truth->tip_force[NT_Z] - planned.Fz};
@@ -248,7 +248,7 @@ static int comes_back_free(nt_sim_slave *slave, const nt_plan *first, double x, 
     if (slave->truth.contact_radius > 0.0 || slave->interaction.attached)
         return 0;
     const double gap = slave->truth.gap;
-    if (first->dents || is_local(first) || gap <= first->capture_gap || gap > first->release_gap)
+    if (first->history == NT_HISTORY_DENTS || is_local(first) || gap <= first->capture_gap || gap > first->release_gap)
         return 0;
     nt_sim_change_plan(slave, first);
     stay(slave, x, travel, 1);
@@ -323,7 +323,7 @@ static void there_is_every_form(void **state)
             continue;
         const nt_plan *plan = nt_terrain_plan(terrain);
         rubs += plan->friction.term.form != NT_FORM_OFF;
-        dents += plan->dents;
+        dents += plan->history == NT_HISTORY_DENTS;
         deforms += plan->deformation.count > 0;
         local += is_local(plan);
         none += plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF;

@@ -205,6 +205,8 @@ class SceneRange(Section):
     """viscosity of the medium, for the drag that a plan leaves out [Pa s], 0 .. 1000"""
     warming: float
     """the temperature may move by this either way [K], 0 .. 100"""
+    duration: float
+    """longest touch, over which the memory of a sample that relaxes counts [s], 0.001 .. 1e+06"""
 
 class SceneRangeValues(TypedDict, total=False):
     minimum_gap: float
@@ -212,6 +214,77 @@ class SceneRangeValues(TypedDict, total=False):
     speed: float
     viscosity: float
     warming: float
+    duration: float
+
+class SceneRheology(Section):
+    kind: Literal["elastic", "power_law", "standard_linear_solid", "prony"]
+    """how the sample's modulus relaxes; but for elastic in place of sample.youngs_modulus"""
+    arm_count: Literal["0", "1", "2", "3", "4", "5", "6", "7", "8"]
+    """of a prony series, how many of these arms it has"""
+    modulus: float
+    """of a power law, Young's modulus E_1 at the reference time [Pa], 0.001 .. 1e+13"""
+    exponent: float
+    """of a power law, beta: 0 is elastic [-], 0 .. 0.85"""
+    reference_time: float
+    """of a power law, t_0 [s], 1e-09 .. 1e+09"""
+    equilibrium_modulus: float
+    """of arms, Young's modulus E_inf that is left in the end [Pa], 0 .. 1e+13"""
+    arm_modulus_1: float
+    """E_1 of an arm [Pa], 0 .. 1e+13"""
+    arm_modulus_2: float
+    """E_2 of an arm [Pa], 0 .. 1e+13"""
+    arm_modulus_3: float
+    """E_3 of an arm [Pa], 0 .. 1e+13"""
+    arm_modulus_4: float
+    """E_4 of an arm [Pa], 0 .. 1e+13"""
+    arm_modulus_5: float
+    """E_5 of an arm [Pa], 0 .. 1e+13"""
+    arm_modulus_6: float
+    """E_6 of an arm [Pa], 0 .. 1e+13"""
+    arm_modulus_7: float
+    """E_7 of an arm [Pa], 0 .. 1e+13"""
+    arm_modulus_8: float
+    """E_8 of an arm [Pa], 0 .. 1e+13"""
+    relaxation_time_1: float
+    """tau_1 of that arm [s], 0 .. 1e+09"""
+    relaxation_time_2: float
+    """tau_2 of that arm [s], 0 .. 1e+09"""
+    relaxation_time_3: float
+    """tau_3 of that arm [s], 0 .. 1e+09"""
+    relaxation_time_4: float
+    """tau_4 of that arm [s], 0 .. 1e+09"""
+    relaxation_time_5: float
+    """tau_5 of that arm [s], 0 .. 1e+09"""
+    relaxation_time_6: float
+    """tau_6 of that arm [s], 0 .. 1e+09"""
+    relaxation_time_7: float
+    """tau_7 of that arm [s], 0 .. 1e+09"""
+    relaxation_time_8: float
+    """tau_8 of that arm [s], 0 .. 1e+09"""
+
+class SceneRheologyValues(TypedDict, total=False):
+    kind: Literal["elastic", "power_law", "standard_linear_solid", "prony"]
+    arm_count: Literal["0", "1", "2", "3", "4", "5", "6", "7", "8"]
+    modulus: float
+    exponent: float
+    reference_time: float
+    equilibrium_modulus: float
+    arm_modulus_1: float
+    arm_modulus_2: float
+    arm_modulus_3: float
+    arm_modulus_4: float
+    arm_modulus_5: float
+    arm_modulus_6: float
+    arm_modulus_7: float
+    arm_modulus_8: float
+    relaxation_time_1: float
+    relaxation_time_2: float
+    relaxation_time_3: float
+    relaxation_time_4: float
+    relaxation_time_5: float
+    relaxation_time_6: float
+    relaxation_time_7: float
+    relaxation_time_8: float
 
 class SceneSections(TypedDict, total=False):
     tip: SceneTipValues
@@ -235,6 +308,8 @@ class SceneFields(Description, core_type=_core.Scene):
     def friction(self) -> SceneFriction: ...
     @property
     def range(self) -> SceneRange: ...
+    @property
+    def rheology(self) -> SceneRheology: ...
 
 class DemandDemand(Section):
     relative_accuracy: float

@@ -26,6 +26,12 @@ from nanotouch.units import key_spellings, to_si
 Kind = Literal["power_law", "standard_linear_solid", "prony"]
 KINDS_OF_KERNEL: tuple[Kind, ...] = get_args(Kind)
 
+
+def number_of(kind: Kind) -> int:
+    """That of the C library, where 0 is a sample that does not relax."""
+    return 1 + KINDS_OF_KERNEL.index(kind)
+
+
 _UNITS = {
     "modulus": "Pa", "exponent": "", "reference_time": "s", "equilibrium_modulus": "Pa",
     "arm_moduli": "Pa", "relaxation_times": "s",
@@ -117,7 +123,7 @@ class Rheology:
             )
         numbers = [float(self.modulus), float(self.exponent), float(self.reference_time)]
         return _core.Rheology(
-            KINDS_OF_KERNEL.index(self.kind),
+            number_of(self.kind),
             [*numbers, float(self.equilibrium_modulus)],
             list(self.arm_moduli),
             list(self.relaxation_times),
@@ -185,6 +191,11 @@ class Rheology:
                 f"[rheology] of a {kind} lacks {', '.join(f'{name}{_example(name)}' for name in needed)}"
             )
         return cls(kind, **values)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The fields that its kind has."""
+        return _KEYS[self.kind]
 
     @property
     def parameters(self) -> tuple[str, ...]:

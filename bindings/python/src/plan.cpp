@@ -107,6 +107,10 @@ static py::dict as_dict(const nt_plan &plan)
         py::dict(py::arg("radius_ratio") = validity.radius_ratio, py::arg("slope") = validity.slope,
                  py::arg("strain") = validity.strain, py::arg("thickness_ratio") = validity.thickness_ratio);
     out["warnings"] = warnings_of(plan);
+    const nt_plan_relaxation &of = plan.relaxation;
+    out["relaxation"] =
+        of.relaxes ? py::object(py::make_tuple(of.bed.springs, of.bed.arms, of.modulus, of.slow_modulus, of.error))
+                   : py::object(py::none());
     return out;
 }
 
@@ -147,7 +151,7 @@ void bind_plan(py::module_ &module)
     module.def("term_rows", &term_rows);
     py::class_<nt_plan>(module, "Plan")
         .def("as_dict", &as_dict)
-        .def_property_readonly("dents", [](const nt_plan &plan) { return plan.dents != 0; })
+        .def_property_readonly("dents", [](const nt_plan &plan) { return plan.history == NT_HISTORY_DENTS; })
         .def("term_eval", &term_eval)
         .def("term_pressure", &term_pressure)
         .def("cutoff_gap", &nt_plan_cutoff_gap)

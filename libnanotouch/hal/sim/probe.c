@@ -6,9 +6,11 @@
 
 #include "core/clamp.h"
 #include "core/rig.h"
+#include "core/same_bits.h"
 #include "hal/sim/sim.h"
 #include "parts.h"
 #include "plasticity/dents.h"
+#include "rheology/loop.h"
 #include "scene/interaction.h"
 #include "scene/parts.h"
 
@@ -40,13 +42,22 @@ static void add_pushed(probe_context *probe, double gap)
     probe->law.k += probe->pushed->resistance;
 }
 
+/* Of a contact that depends on what was done before. */
+static nt_law_value law_of_history(const probe_context *probe, double gap)
+{
+    const nt_sim_relaxing *relaxing = &probe->slave->relaxing;
+    if (probe->plan->history == NT_HISTORY_DENTS)
+        return nt_dents_eval(&probe->plan->indentation, probe->dents, gap);
+    return nt_viscoelastic_at(&probe->plan->relaxation.bed, &relaxing->state, relaxing->held, -gap);
+}
+
 static nt_law_value force_at(void *context, double gap)
 {
     probe_context *probe = context;
     if (gap != probe->gap) {
         probe->gap = gap;
-        probe->law = probe->plan->dents ? nt_dents_eval(&probe->plan->indentation, probe->dents, gap)
-                                        : nt_interaction_law(probe->plan, probe->interaction, probe->place, gap);
+        probe->law = probe->plan->history ? law_of_history(probe, gap)
+                                          : nt_interaction_law(probe->plan, probe->interaction, probe->place, gap);
         if (probe->pushed)
             add_pushed(probe, gap);
     }
@@ -56,10 +67,12 @@ static nt_law_value force_at(void *context, double gap)
 static void moved_to(void *context, double gap)
 {
     probe_context *probe = context;
-    if (!probe->plan->dents) {
+    if (!probe->plan->history) {
         nt_interaction_move(probe->plan, probe->interaction, probe->place, gap);
         return;
     }
+    if (probe->plan->history == NT_HISTORY_RELAXES)
+        return; /* at the end of the period */
     const double heat = probe->dents->dissipated;
     nt_dents_advance(&probe->plan->indentation, probe->dents, gap);
     if (probe->dents->dissipated > heat)
@@ -145,7 +158,7 @@ static void slide(nt_sim_slave *slave, int parted, double gap)
     const nt_pose here = {slave->x, slave->y, gap};
     if (parted && rubs)
         release(slave);
-    if (slave->plan->dents && rubs)
+    if (slave->plan->history == NT_HISTORY_DENTS && rubs)
         slide_in_dent(slave);
     else if (rubs || slave->slide.placed) /* or has rubbed by another plan */
         nt_interaction_slide_gap(slave->plan, &slave->interaction, &slave->slide, &slave->place, &here);
@@ -157,11 +170,40 @@ double nt_sim_surface_height(const nt_sim_slave *slave)
            nt_sim_surface_jump(&slave->link);
 }
 
+/* Of the dent. */
+static double radius_of(const nt_viscoelastic_bed *bed, int touched)
+{
+    double radius = 0.0;
+    for (int i = 0; i < touched; i++)
+        radius += 0.5 * bed->weight[i];
+    return radius;
+}
+
+/* The sample relaxes for a period. A tip that has left the contact comes down on what was never touched. */
+static void relax(nt_sim_slave *slave)
+{
+    nt_sim_relaxing *of = &slave->relaxing;
+    const nt_viscoelastic_bed *bed = &slave->plan->relaxation.bed;
+    const double x = slave->x - of->x, y = slave->y - of->y;
+    if (of->state.pressed > 0) {
+        of->x = slave->x;
+        of->y = slave->y;
+    } else if (of->state.touched > 0 && hypotenuse(x, y) > radius_of(bed, of->state.touched)) {
+        of->state = (nt_viscoelastic_state){.touched = 0};
+    }
+    nt_viscoelastic_begin(bed, &of->state, of->held);
+    slave->law_gap = NAN; /* the law is another one now */
+}
+
 /* Where it touches nothing: what the last contact has left, and how deep the dents are here. */
-static void find_dents(nt_sim_slave *slave)
+static void begin_history(nt_sim_slave *slave)
 {
     slave->left = 0;
-    if (!slave->plan->dents || slave->dents.touches)
+    if (!slave->plan->history)
+        return;
+    if (slave->plan->history == NT_HISTORY_RELAXES)
+        relax(slave);
+    if (slave->plan->history == NT_HISTORY_RELAXES || slave->dents.touches)
         return;
     const double before = slave->lowered;
     slave->left = nt_dents_place(&slave->plan->indentation, &slave->dents, slave->x, slave->y);
@@ -170,6 +212,22 @@ static void find_dents(nt_sim_slave *slave)
     const double lift = fmax(-gap, 0.0); /* ... unless a rim lifts it: what only comes near does not yield */
     slave->cantilever.tip_height = gap + lift;
     slave->cantilever.deflection += lift / cos(slave->link.rig.probe.tilt);
+}
+
+/* What this period has done to such a contact, with the truth of it. NT_E_DEVICE: it can be followed no farther. */
+static nt_status end_history(nt_sim_slave *slave, double gap)
+{
+    if (slave->plan->history == NT_HISTORY_DENTS) {
+        plough(slave);
+        slave->truth.energy = slave->dents.contact.stored;
+        slave->truth.dent_heat = slave->dents.dissipated;
+        return slave->dents.full ? NT_E_DEVICE : NT_OK;
+    }
+    const nt_viscoelastic_bed *bed = &slave->plan->relaxation.bed;
+    nt_sim_relaxing *of = &slave->relaxing;
+    nt_viscoelastic_end(bed, &of->state, of->held, -gap);
+    slave->law.U = slave->truth.energy = nt_viscoelastic_stored(bed, &of->state);
+    return of->state.indentation > bed->max_indentation ? NT_E_DEVICE : NT_OK;
 }
 
 /* What is known of the place under the tip; 1: it is another one. */
@@ -183,26 +241,42 @@ static int find_place(nt_sim_slave *slave)
     return 1;
 }
 
+/* Springs of another sample, or of more depth. One that has not relaxed so far begins at rest under the tip; its lever
+ * is at rest from now on. */
+static void begin_to_relax(nt_sim_slave *slave, const nt_plan *before)
+{
+    nt_sim_relaxing *of = &slave->relaxing;
+    const nt_viscoelastic_state old = of->state;
+    const nt_viscoelastic_bed *bed = before->history == NT_HISTORY_RELAXES ? &before->relaxation.bed : NULL;
+    nt_viscoelastic_carry(bed, &old, &slave->plan->relaxation.bed, &of->state);
+    if (!bed && slave->truth.gap < 0.0)
+        nt_viscoelastic_rest(&slave->plan->relaxation.bed, &of->state, -slave->truth.gap);
+    slave->dynamic = 0;
+}
+
 void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan)
 {
-    if (plan == slave->plan)
+    const nt_plan *before = slave->plan;
+    if (plan == before)
         return;
     slave->plan = plan;
     slave->lowered = slave->dents.touches = 0; /* what touched by another law has let go */
-    if (plan->dents)
-        slave->interaction.attached = 0;   /* its contact is that of the dents */
+    if (plan->history)
+        slave->interaction.attached = 0; /* its contact is another one */
+    if (plan->history == NT_HISTORY_RELAXES)
+        begin_to_relax(slave, before);
     slave->place_x = slave->law_gap = NAN; /* nothing is known of it yet */
     slave->tap.table = (nt_flow_table){.cell = {{.is_made = 0}}};
 }
 
-/* Of slopes and what is pushed. A sample that keeps dents has one contact everywhere: the slope alone turns its force
- * aside.
+/* Of slopes and what is pushed. A sample that keeps dents or relaxes has one contact everywhere: the slope alone turns
+ * its force aside.
  */
 static void sides_of(const nt_sim_slave *slave, double gap, double force, double sides[2])
 {
     const double *pushed = slave->pushed.state.force;
     double slopes[2] = {0.0, 0.0}; /* of a flat */
-    if (slave->plan->surface && slave->plan->dents) {
+    if (slave->plan->surface && slave->plan->history) {
         slopes[NT_X] = -force * slave->place.surface.zx;
         slopes[NT_Y] = -force * slave->place.surface.zy;
     } else if (slave->plan->surface) {
@@ -226,7 +300,7 @@ static void tell_truth(nt_sim_slave *slave, const probe_context *context, const 
                               .contact_radius = law.a,
                               .surface_height = context->surface,
                               .tip_height = gap + context->surface,
-                              .energy = slave->plan->dents ? slave->dents.contact.stored : law.U,
+                              .energy = law.U,
                               .dent_heat = slave->dents.dissipated,
                               .friction_stored = friction->stored,
                               .friction_heat = friction->dissipated};
@@ -235,7 +309,7 @@ static void tell_truth(nt_sim_slave *slave, const probe_context *context, const 
 nt_status nt_sim_move_probe(nt_sim_slave *slave)
 {
     const int is_elsewhere = find_place(slave);
-    find_dents(slave);
+    begin_history(slave);
     const double surface = slave->place.surface.z - slave->lowered + nt_sim_surface_jump(&slave->link);
     const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
     if (nt_sim_taps(slave)) {
@@ -274,12 +348,10 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     double sides[2];
     sides_of(slave, gap, law.F, sides);
     slide(slave, context.parted, gap);
-    if (slave->plan->dents)
-        plough(slave);
     tell_truth(slave, &context, sides);
-    const int fails = (slave->plan->dents && slave->dents.full) ||
-                      (lie && status != NT_OK); /* a reading that is none stops the touch */
-    return fails ? NT_E_DEVICE : status;
+    if (slave->plan->history && end_history(slave, gap) != NT_OK)
+        return NT_E_DEVICE; /* a reading that is none stops the touch */
+    return lie && status != NT_OK ? NT_E_DEVICE : status;
 }
 
 int nt_sim_needs_dynamics(const nt_plan *plan, const nt_rig *rig, double period)

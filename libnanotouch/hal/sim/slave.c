@@ -45,7 +45,7 @@ static void moment_now(const nt_sim_slave *slave, double moment[2])
 
 static int is_dynamic(const nt_sim_slave *slave, nt_probe_model model)
 {
-    if (slave->pushed.laws.kind != NT_PUSHED_NOTHING)
+    if (slave->pushed.laws.kind != NT_PUSHED_NOTHING || slave->plan->history == NT_HISTORY_RELAXES)
         return 0;
     return model == NT_PROBE_DYNAMIC ||
            (model == NT_PROBE_AUTO && nt_sim_needs_dynamics(slave->plan, &slave->link.rig, slave->link.period));
@@ -85,6 +85,11 @@ nt_status nt_sim_slave_init(nt_sim_slave *slave, const nt_sim_setup *setup)
     nt_status status = nt_sim_check_setup(setup);
     if (status != NT_OK)
         return status;
+    const nt_plan *plan = setup->plan;
+    if (plan->history == NT_HISTORY_RELAXES && setup->probe_model == NT_PROBE_DYNAMIC)
+        return NT_E_UNSUPPORTED;
+    if (plan->history == NT_HISTORY_RELAXES && plan->relaxation.bed.period != setup->period)
+        return NT_E_ARGUMENT;
     nt_sim_slave made = {.plan = setup->plan, .x = setup->x, .y = setup->y};
     status = nt_sim_link_init(&made.link, setup, 0.0);
     if (status == NT_OK)

@@ -17,8 +17,8 @@ nt_status nt_sim_tap_init(nt_sim_slave *slave, const nt_sim_lock_in *lock_in)
     nt_sim_tap *tap = &slave->tap;
     if (lock_in == NULL)
         return NT_OK;
-    if (slave->plan->dents)
-        return NT_E_UNSUPPORTED; /* the slow flow keeps no dents */
+    if (slave->plan->history != NT_HISTORY_NONE)
+        return NT_E_UNSUPPORTED; /* which the slow flow does not know */
     const nt_status status = nt_tapping_init(&tap->lever, &slave->link.rig.probe, &lock_in->drive, TOLERANCE, NULL);
     if (status != NT_OK)
         return status;

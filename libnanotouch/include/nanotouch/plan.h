@@ -13,6 +13,7 @@
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"
 #include "nanotouch/terms.h"
+#include "nanotouch/viscoelastic_loop.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -128,6 +129,23 @@ typedef struct nt_plan_friction {
     double sample_factor;  /* 2 (1 + nu_s) (2 - nu_s): 1/G* = tip_compliance + sample_factor/E_s [-] */
 } nt_plan_friction;
 
+/* What a session computes in place of the contact, because it depends on all that was done before. */
+typedef enum nt_plan_history {
+    NT_HISTORY_NONE,
+    NT_HISTORY_DENTS,  /* a sample that yields (dents.h) */
+    NT_HISTORY_RELAXES /* a sample that relaxes (viscoelastic_loop.h) */
+} nt_plan_history;
+
+/* Of a scene with a rheology that is not elastic: whether time matters. */
+typedef struct nt_plan_relaxation {
+    int relaxes;             /* the scene's sample does; 0: the rest is 0 */
+    double modulus;          /* E that the plan's own contact has: over one period, or slow_modulus where time does not
+                                matter [Pa] */
+    double slow_modulus;     /* E at the end of range.duration [Pa] */
+    double error;            /* part of the bound: of springs and arms, or of taking slow_modulus at all times [-] */
+    nt_viscoelastic_bed bed; /* springs 0: time does not matter */
+} nt_plan_relaxation;
+
 /* Immutable after nt_plan_make. It refers to itself: share it by pointer; copy it with nt_plan_copy only. */
 typedef struct nt_plan {
     nt_plan_term terms[NT_PLAN_TERMS];
@@ -150,8 +168,9 @@ typedef struct nt_plan {
     int warning_count;
 
     nt_plan_friction friction;
-    int dents;                  /* 1: a session computes a sample that yields (dents.h) in place of the contact ... */
-    nt_indentation indentation; /* ... by this */
+    nt_plan_history history;
+    nt_indentation indentation; /* of dents */
+    nt_plan_relaxation relaxation;
 
     nt_adhesion_source source;
     nt_contact contact; /* w: what the tail leaves of it (E5b). Of a surface with properties the softest modulus and
@@ -214,6 +233,7 @@ typedef struct nt_plan_inputs {
                                         place of sample.youngs_modulus and of all that gives w */
     nt_deform_table *room; /* for NT_DEFORM_RADII tables of a sample that deforms over those radii, borrowed for the
                              life of the plan; NULL: such a sample has the tip's own radius everywhere, or is refused */
+    double period;         /* of the loop that will run it, which a sample that relaxes depends on; 0: 0.1 ms [s] */
 } nt_plan_inputs;
 
 /* Corners of what a surface goes through; together they are a number. */

@@ -12,6 +12,7 @@ extern "C" {
 #endif
 
 typedef enum nt_rheology_kind {
+    NT_RHEOLOGY_ELASTIC,               /* of a scene: its sample does not relax. No kernel */
     NT_RHEOLOGY_POWER_LAW,             /* E = modulus (t/reference_time)^-exponent */
     NT_RHEOLOGY_STANDARD_LINEAR_SOLID, /* E = E_inf + E_1 exp(-t/tau_1): one arm */
     NT_RHEOLOGY_PRONY                  /* E = E_inf + Sum E_k exp(-t/tau_k) */

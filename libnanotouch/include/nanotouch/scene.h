@@ -7,6 +7,7 @@
 #include "nanotouch/advanced/field.h"
 #include "nanotouch/advanced/geometry.h"
 #include "nanotouch/contact.h"
+#include "nanotouch/rheology.h"
 #include "nanotouch/terms.h"
 
 #ifdef __cplusplus
@@ -98,6 +99,7 @@ typedef struct nt_range {
     double speed;        /* the fastest approach [m/s] */
     double viscosity;    /* of the medium, for the drag that a plan leaves out [Pa s] */
     double warming;      /* the temperature may move by +- this [K] */
+    double duration;     /* the longest touch, over which the memory of a sample that relaxes counts [s] */
 } nt_range;
 
 typedef struct nt_scene {
@@ -107,6 +109,7 @@ typedef struct nt_scene {
     nt_adhesion adhesion;
     nt_scene_friction friction;
     nt_range range;
+    nt_rheology rheology; /* of the sample; a kind that relaxes stands in place of sample.youngs_modulus */
     nt_custom_term custom[NT_CUSTOM_TERMS]; /* laws of one's own (terms.h), checked when a plan is made */
 } nt_scene;
 

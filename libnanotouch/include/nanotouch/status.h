@@ -63,10 +63,13 @@ NT_API const char *nt_status_message(nt_status status);
     X(DENTS_BESIDE, "beside adhesion or other forces than contact, which a sample that keeps dents does not know")     \
     X(DENTS_SHAPE, "of a layer, a map of properties, or a tip that is not round")                                      \
     X(DENTS_GROOVE, "a groove wider than half of the tip")                                                             \
+    X(RELAXES_BESIDE, "beside {}, which a sample that relaxes does not know")                                          \
+    X(RELAXES_DEPTH, "where a sample that relaxes is pressed in deeper than its law holds")                            \
     X(FRICTION_SHAPE, "of a cone or punch that adheres; its shear strength will do")                                   \
     X(BOUND_OF_REAL_SLAVE, "a plan whose bound is not known, which no real slave is armed with")                       \
     X(FORCE_TABLE_SURFACE, "a plan over a surface has a force of each place, a table that of a flat")                  \
     X(FORCE_TABLE_DENTS, "a sample that keeps dents has a force of all that was pressed before")                       \
+    X(FORCE_TABLE_RELAXES, "a sample that relaxes has a force of all that was pressed before")                         \
     X(FORCE_TABLE_SINGLE, "a force that single precision cannot hold")                                                 \
     X(FORCE_TABLE_FAR, "a force that is felt beyond 1 mm")                                                             \
     X(FORCE_TABLE_PIECES, "it needs more pieces than there is place for")                                              \

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-enum { NT_LOOP_SPRINGS = 128, NT_LOOP_ARMS = 24 };
+enum { NT_LOOP_SPRINGS = 128, NT_LOOP_ARMS = 32 };
 
 /* What a loop is made for. */
 typedef struct nt_viscoelastic_demand {

@@ -15,7 +15,7 @@ from nanotouch.contact.geometry import KINDS
 from nanotouch.curves import CurveReport, ForceCurve, analyse
 from nanotouch.curves.flicker import point_noise
 from nanotouch.errors import InvalidValue
-from nanotouch.rheology import KINDS_OF_KERNEL
+from nanotouch.rheology import number_of
 
 from .models import INCOMPRESSIBLE, Floats, Model
 from .over_time import ROWS
@@ -134,7 +134,7 @@ class Law:
         """For the C library."""
         row = ROWS[self.model.kernel]
         shape = (KINDS.index(self.model.tip), self.model.sides or 0, self.radius, self.half_angle)
-        options = extension.PathOptions(shape, KINDS_OF_KERNEL.index(row.kernel), max(row.arms, 1))
+        options = extension.PathOptions(shape, number_of(row.kernel), max(row.arms, 1))
         options.poisson_ratio, options.thickness = self.inner_ratio, self.thickness
         options.spring_constant, options.noise = self.spring_constant, self.noise
         options.drag_height = self.drag_height

@@ -143,7 +143,7 @@ class Scanner(Lever):
     def __init__(
         self, plan: Plan, scan: Scan | None = None, rig: Rig | None = None, drive: Drive | None = None
     ) -> None:
-        plan.refuse_dents("a scan")
+        plan.refuse_history("a scan")
         super().__init__(plan, rig, drive)
         self.scan = Scan() if scan is None else scan.copy()
         self._core = _core.Scanner(self.scan.core, self.rig.core, self.drive.core, plan.core)

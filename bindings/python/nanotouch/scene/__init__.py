@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, get_args
@@ -17,6 +17,7 @@ from nanotouch import _core
 from nanotouch._io.files import toml_tables
 from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
+from nanotouch.rheology import Rheology
 from nanotouch.scene import materials
 from nanotouch.scene._custom import CustomTerm, find
 from nanotouch.scene._custom import register as register
@@ -34,6 +35,8 @@ else:
 
 Quantity = Literal["force", "stiffness", "radius", "folds"]
 Bound = Literal["kept", "exact", "any"]
+ARMS = 8  # that a kernel has at most
+SINGLE = ("arm_count", "arm_modulus_", "relaxation_time_")  # fields of single arms
 BOUNDS: tuple[Bound, ...] = get_args(Bound)
 
 
@@ -42,17 +45,39 @@ class Scene(SceneFields, core_type=_core.Scene):
 
     ``terms`` are laws of one's own, by the name of :func:`register` and with their parameters:
     ``Scene(terms={"gel": {"strength": 1e-3}})``, in a file ``[terms.gel]``.
+
+    A sample that relaxes is a `Rheology`, ``Scene(rheology=Rheology.power_law(1200.0, 0.2))``, in a file
+    ``[rheology]``: docs/rheology.md.
     """
 
     beside = ("terms", "surface", "drive", "zloop", "raster", "readout")  # read by surface_file and scan
     _terms: dict[str, tuple[CustomTerm, dict[str, float | str]]]
 
     def __init__(
-        self, *, terms: Mapping[str, Mapping[str, Any]] | None = None, **sections: Unpack[SceneSections]
+        self,
+        *,
+        terms: Mapping[str, Mapping[str, Any]] | None = None,
+        rheology: Rheology | Mapping[str, Any] | None = None,
+        **sections: Unpack[SceneSections],
     ) -> None:
         super().__init__(**sections)
+        self._relax_by(rheology)
         for name, values in (terms or {}).items():
             self.add_term(name, **values)
+
+    def _relax_by(self, rheology: object) -> None:
+        """Take a kernel, or the fields of one."""
+        if isinstance(rheology, Rheology):
+            rheology = {name: getattr(rheology, name) for name in ("kind", *rheology.keys)}
+        table = as_table("rheology", {} if rheology is None else rheology)
+        if "kind" not in table and not table.keys().isdisjoint(("arm_moduli", "relaxation_times")):
+            raise InvalidValue("rheology lacks its kind: elastic, power_law, standard_linear_solid or prony")
+        for key, value in table.items():
+            if self._set("rheology", key, value):
+                continue
+            if f"rheology.{key}" not in self.fields:
+                raise InvalidValue(f"rheology has no field {key!r}; it has {', '.join(self.keys_of('rheology'))}")
+            self[f"rheology.{key}"] = value
 
     @property
     def terms(self) -> Mapping[str, Mapping[str, float]]:
@@ -123,7 +148,13 @@ class Scene(SceneFields, core_type=_core.Scene):
 
     def update_from_tables(self, tables: Mapping[str, Any]) -> None:
         """Set what the tables name; a section that no description has is refused."""
-        super().update_from_tables(tables)
+        of = as_table("rheology", tables.get("rheology", {}))
+        is_kernel = "kind" in of and len(of) > 1 and not any(key.startswith(SINGLE) for key in of)
+        super().update_from_tables(
+            {name: table for name, table in tables.items() if name != "rheology" or not is_kernel}
+        )
+        if is_kernel:  # with all that its kind has, and nothing else
+            self._relax_by(Rheology.from_table(of))
         for name, table in as_table("terms", tables.get("terms", {})).items():
             values: dict[str, Any] = {**find(name).from_table(as_table(f"terms.{name}", table))}
             self.add_term(name, **values)
@@ -165,7 +196,17 @@ class Scene(SceneFields, core_type=_core.Scene):
         return cls.from_tables(read_tables(path))
 
     def _set(self, section: str, key: str, value: object) -> bool:
-        """``material``: moduli and yield strength, and the surface energy where the table has it, of a named one."""
+        """``material``: moduli and yield strength, and the surface energy where the table has it, of a named one. Arms
+        of a kernel as lists."""
+        if section == "rheology" and key in ("arm_moduli", "relaxation_times"):
+            values = [float(one) for one in value] if isinstance(value, Sequence) else []
+            if not 1 <= len(values) <= ARMS:
+                raise InvalidValue(f"rheology.{key} = {told(value)}: valid are 1 to {ARMS} numbers")
+            short = {"arm_moduli": "arm_modulus", "relaxation_times": "relaxation_time"}[key]
+            for place, one in enumerate(values, 1):
+                self[f"rheology.{short}_{place}"] = one
+            self["rheology.arm_count"] = len(values)
+            return True
         if section not in ("tip", "sample") or key != "material":
             return False
         material = materials.find(value if isinstance(value, str) else told(value))

@@ -26,6 +26,7 @@ def text_of(facts: dict[str, Any]) -> str:
     lines += [_term(term, facts) for term in others if term.force > 0.0]
     lines += _friction(Term(*facts["friction"]))
     lines += _deformation(facts)
+    lines += _relaxation(facts)
     if facts["curvature_error"] > 0.0:
         lines.append(_surface(contact, facts))
     lines += _properties(facts)
@@ -72,6 +73,19 @@ def _friction(term: Term) -> list[str]:
         return [f"friction: left out, {largest}, {_percent(term.bound)} of the larger of the force and its scale"]
     bound = "bound not known" if math.isnan(term.bound) else f"within {_percent(term.bound)}"
     return [f"friction: {term.words}, {largest}, {bound}"]
+
+
+def _relaxation(facts: dict[str, Any]) -> list[str]:
+    """Whether time matters."""
+    if facts["relaxation"] is None:
+        return []
+    springs, arms, modulus, slow, error = facts["relaxation"]
+    if not springs:
+        return [f"time: left out, {in_words(slow, 'Pa')} at any time, within {_percent(error)}"]
+    return [
+        f"time: {springs} springs of {arms} arms, within {_percent(error)}; {in_words(modulus, 'Pa')} over a period, "
+        f"{in_words(slow, 'Pa')} in the end"
+    ]
 
 
 def _deformation(facts: dict[str, Any]) -> list[str]:

@@ -147,8 +147,6 @@ class Description(Mapping[str, float]):
         """Set what the tables name; a section that no description has is refused."""
         self._check_free(type(self).__name__)
         for section in tables:
-            if section == "rheology":
-                raise InvalidValue("[rheology]: plans and sessions are elastic so far; read it by Rheology.from_toml")
             if section not in Description._all_sections:
                 raise InvalidValue(f"unknown section [{section}]; known are {', '.join(Description._all_sections)}")
         for section in self.sections():

@@ -80,7 +80,7 @@ class Interaction:
     """
 
     def __init__(self, plan: Plan, history: History = "approach") -> None:
-        plan.refuse_dents("an Interaction")
+        plan.refuse_history("an Interaction")
         self.plan = plan
         self._core = _core.Interaction(plan.core)
         self.state = State(attached=begins_attached(history))

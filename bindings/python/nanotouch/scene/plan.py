@@ -30,6 +30,21 @@ if TYPE_CHECKING:  # a plan over a flat loads no images
 History = Literal["approach", "retract"]
 
 
+class Relaxation(NamedTuple):
+    """Whether time matters over a sample that relaxes, and with which moduli."""
+
+    springs: int
+    """that follow the contact in a session; 0: time does not matter, the contact is elastic"""
+    arms: int
+    """of each spring"""
+    modulus: float
+    """Young's modulus that the plan's own contact has: over one period, or the slow one [Pa]"""
+    slow_modulus: float
+    """at the end of ``range.duration`` [Pa]"""
+    error: float
+    """part of the bound: of springs and arms, or of leaving time out"""
+
+
 class Plan:
     """What is computed for a scene, and why; see ``print(plan)``. Immutable."""
 
@@ -70,10 +85,22 @@ class Plan:
     def _all_terms(self) -> list[Term]:
         return [Term(*term) for term in self._facts["terms"]]
 
-    def refuse_dents(self, what: str) -> None:
-        """Raise `InvalidValue` where the sample keeps dents: only a session computes that."""
+    def refuse_history(self, what: str) -> None:
+        """Raise `InvalidValue` where the force depends on what was done before: only a session computes that."""
+        if self.relaxation is not None and self.relaxation.springs > 0:
+            kind = self._made_from[0].plain("rheology.kind") if self._made_from else "not elastic"
+            raise InvalidValue(
+                f"rheology.kind = {kind}: {what} does not know a sample that relaxes; a Session does, and "
+                "Rheology.force computes the curve of any history"
+            )
         if self.core.dents:
             raise InvalidValue(f"sample.dents = yes: {what} does not know a sample that keeps dents; a Session does")
+
+    @property
+    def relaxation(self) -> Relaxation | None:
+        """Of a sample that relaxes, whether time matters; None: the scene's does not."""
+        of = self._facts["relaxation"]
+        return None if of is None else Relaxation(*of)
 
     @property
     def bound(self) -> float:

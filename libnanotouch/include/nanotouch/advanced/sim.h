@@ -145,6 +145,13 @@ typedef struct nt_sim_pushed {
     uint32_t losses[NT_PARTICLES];  /* ... and lost it */
 } nt_sim_pushed;
 
+/* A sample that relaxes, under the place where the tip pressed it last. */
+typedef struct nt_sim_relaxing {
+    nt_viscoelastic_state state;
+    double held[NT_LOOP_SPRINGS]; /* by its springs in this period, if they stayed where they are [Pa m] */
+    double x, y;                  /* [m] */
+} nt_sim_relaxing;
+
 typedef struct nt_sim_slave {
     nt_sim_link link;
     const nt_plan *plan;
@@ -163,6 +170,7 @@ typedef struct nt_sim_slave {
     nt_interaction_state interaction;
     nt_slide slide; /* friction */
     nt_dents dents; /* of a plan with a sample that keeps them */
+    nt_sim_relaxing relaxing;
     nt_sim_pushed pushed;
     double lowered;                        /* by them, where this contact began, or would here [m] */
     int left;                              /* dents that were left in this period; the newest of the list */

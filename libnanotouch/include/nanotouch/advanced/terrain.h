@@ -22,6 +22,7 @@ typedef struct nt_terrain_setup {
     int dilated;                     /* of the map; 0: heights of the body, 1: of the apex of this tip at first touch */
     const nt_surface *surface;       /* dilated by this tip, borrowed until nt_terrain_close; NULL: none */
     const nt_radius_map *radii;      /* of `surface`, borrowed; NULL: its curvature is not felt */
+    double period;                   /* of the loop that runs it, for a sample that relaxes; 0: 0.1 ms [s] */
     const nt_properties *properties; /* on the grid of `surface` or `map`, borrowed; NULL: the scene's everywhere */
 } nt_terrain_setup;
 /* The paper's scene, 1 % of the force, no probe, a flat at z = 0. */
