@@ -38,14 +38,14 @@ typedef struct {
 #ifdef TRANSPOSED
 typedef double four __attribute__((vector_size(32)));
 
-/* Column j of the result holds number j of each of the four. */
-static inline void transpose(const double *const from[4], four to[4])
+/* Four numbers of each of four cells, from this offset on; column j of the result holds number j of each. */
+static inline void transpose(const nt_maugis_cell *const from[4], size_t offset, four to[4])
 {
     four q0, q1, q2, q3;
-    memcpy(&q0, from[0], sizeof q0);
-    memcpy(&q1, from[1], sizeof q1);
-    memcpy(&q2, from[2], sizeof q2);
-    memcpy(&q3, from[3], sizeof q3);
+    memcpy(&q0, (const char *)from[0] + offset, sizeof q0);
+    memcpy(&q1, (const char *)from[1] + offset, sizeof q1);
+    memcpy(&q2, (const char *)from[2] + offset, sizeof q2);
+    memcpy(&q3, (const char *)from[3] + offset, sizeof q3);
     const four even_01 = __builtin_shufflevector(q0, q1, 0, 4, 2, 6),
                odd_01 = __builtin_shufflevector(q0, q1, 1, 5, 3, 7);
     const four even_23 = __builtin_shufflevector(q2, q3, 0, 4, 2, 6),
@@ -59,21 +59,23 @@ static inline void transpose(const double *const from[4], four to[4])
 /* Cubics of four cells at once. */
 static inline void cubics(const nt_maugis_cell *cells, const int64_t cell[4], const double s[4], double force[4])
 {
-    const double *const from[] = {cells[cell[0]].F, cells[cell[1]].F, cells[cell[2]].F, cells[cell[3]].F};
+    const nt_maugis_cell *const from[] = {&cells[cell[0]], &cells[cell[1]], &cells[cell[2]], &cells[cell[3]]};
     four c[4], x;
-    transpose(from, c);
+    transpose(from, offsetof(nt_maugis_cell, F), c);
     memcpy(&x, s, sizeof x);
     const four result = (c[0] + x * c[1]) + x * x * (c[2] + x * c[3]); /* as nt_cubic */
     memcpy(force, &result, sizeof result);
 }
 
-/* Four numbers of four cells, into four arrays. */
-static inline void gather(const double *const from[4], double *const to[4])
+/* The same numbers into four arrays of a block that follow each other. */
+static inline void gather(const nt_maugis_cell *const from[4], size_t offset, double *to)
 {
     four c[4];
-    transpose(from, c);
-    for (int j = 0; j < 4; j++)
-        memcpy(to[j], &c[j], sizeof c[j]);
+    transpose(from, offset, c);
+    memcpy(to, &c[0], sizeof c[0]); /* a loop of four is not unrolled, and c then stands in memory */
+    memcpy(to + BLOCK, &c[1], sizeof c[1]);
+    memcpy(to + 2 * BLOCK, &c[2], sizeof c[2]);
+    memcpy(to + 3 * BLOCK, &c[3], sizeof c[3]);
 }
 #else
 static inline void cubics(const nt_maugis_cell *cells, const int64_t cell[4], const double s[4], double force[4])
@@ -82,13 +84,17 @@ static inline void cubics(const nt_maugis_cell *cells, const int64_t cell[4], co
         force[i] = nt_cubic(cells[cell[i]].F, s[i]);
 }
 
-static inline void gather(const double *const from[4], double *const to[4])
+static inline void gather(const nt_maugis_cell *const from[4], size_t offset, double *to)
 {
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++)
-            to[j][i] = from[i][j];
+            memcpy(&to[j * BLOCK + i], (const char *)from[i] + offset + (size_t)j * sizeof *to, sizeof *to);
 }
 #endif
+
+_Static_assert(offsetof(nt_maugis_cell, u) == offsetof(nt_maugis_cell, U) + sizeof(double) &&
+                   offsetof(nt_maugis_cell, U) + 4 * sizeof(double) <= sizeof(nt_maugis_cell),
+               "U and u are the first two of four numbers");
 
 /* The forces of a block from the table; 0 where some indentation lies outside it. */
 VARIANTS static int table_find(const nt_maugis_table *table, nt_branch branch, const double *indentation, double *force)
@@ -192,23 +198,18 @@ typedef struct {
 
 /* The numbers of the cells of a block, one array for each: gathered on their own, the rest is plain vector code. */
 typedef struct {
-    double F[4][BLOCK], a[4][BLOCK], U[BLOCK], u[BLOCK];
+    double F[4][BLOCK], a[4][BLOCK], rest[4][BLOCK]; /* of the rest the first two, U and u */
 } cell_block;
 
 VARIANTS static void cells_gather(const nt_maugis_cell *cells, const int64_t *cell, cell_block *restrict to)
 {
     for (int i = 0; i < BLOCK; i += 4) {
-        const nt_maugis_cell *c0 = &cells[cell[i]], *c1 = &cells[cell[i + 1]], *c2 = &cells[cell[i + 2]],
-                             *c3 = &cells[cell[i + 3]];
-        const double *const F[] = {c0->F, c1->F, c2->F, c3->F}, *const a[] = {c0->a, c1->a, c2->a, c3->a};
-        double *const to_F[] = {&to->F[0][i], &to->F[1][i], &to->F[2][i], &to->F[3][i]};
-        double *const to_a[] = {&to->a[0][i], &to->a[1][i], &to->a[2][i], &to->a[3][i]};
-        gather(F, to_F);
-        gather(a, to_a);
-    }
-    for (int i = 0; i < BLOCK; i++) {
-        to->U[i] = cells[cell[i]].U;
-        to->u[i] = cells[cell[i]].u;
+        const nt_maugis_cell *from[4];
+        for (int j = 0; j < 4; j++)
+            from[j] = &cells[cell[i + j]];
+        gather(from, offsetof(nt_maugis_cell, F), &to->F[0][i]);
+        gather(from, offsetof(nt_maugis_cell, a), &to->a[0][i]);
+        gather(from, offsetof(nt_maugis_cell, U), &to->rest[0][i]);
     }
 }
 
@@ -218,8 +219,8 @@ VARIANTS static void values_fill(const block *at, const cell_block *cells, const
         const nt_maugis_cell cell = {
             .F = {cells->F[0][i], cells->F[1][i], cells->F[2][i], cells->F[3][i]},
             .a = {cells->a[0][i], cells->a[1][i], cells->a[2][i], cells->a[3][i]},
-            .U = cells->U[i],
-            .u = cells->u[i],
+            .U = cells->rest[0][i],
+            .u = cells->rest[1][i],
         };
         const nt_maugis_place place = {.s = at->s[i], .Z = at->Z[i]};
         const nt_law_value value = nt_maugis_cell_value(&cell, place, scales[0], scales[1]);
@@ -267,9 +268,9 @@ static nt_status values_block(const nt_maugis_table *table, const nt_maugis_quer
 {
     const double scales[2] = {table->rate, table->start};
     double in[BLOCK];
-    block at;
-    cell_block cells;
-    values found;
+    _Alignas(64) block at; /* a cache line: half of the loads would else lie on two, as chance has it */
+    _Alignas(64) cell_block cells;
+    _Alignas(64) values found;
     int finite = 1;
     for (int i = 0; i < BLOCK; i++) {
         in[i] = arrays->in[(from + i) * arrays->in_stride];
