@@ -51,6 +51,7 @@ for (const colorScheme of ["light", "dark"])
     await all(page);
     for (const sheet of ["", "c", "t", "e", "h"]) {
       if (sheet) await page.locator(`[data-own=${sheet}]`).click();
+      if (sheet === "c") await until(page, () => document.querySelectorAll(".cards canvas").length === document.querySelectorAll(".cards button").length);
       const { found, drawn } = await value(page, texts);
       assert.ok(found.length > 20, `${found.length}`);
       assert.deepEqual(found.filter(({ contrast }) => contrast < TEXT), [], `sheet ${sheet}`);

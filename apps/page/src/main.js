@@ -141,7 +141,7 @@ function dress(name) {
   palette = table.palettes[name];
   for (const [part, colour] of Object.entries(palette))
     if (part !== "heights") document.documentElement.style.setProperty(`--${part}`, `rgb(${colour.join(",")})`);
-  document.documentElement.style.setProperty("--heights", palette.heights.map(String).join(";"));
+  document.documentElement.style.setProperty("--heights", palette.heights.map(String).join("|"));
   document.documentElement.style.colorScheme = name;
   document.body.dataset.look = name;
   stage.paint(palette);

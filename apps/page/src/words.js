@@ -22,7 +22,7 @@ const SMALL = 56; // side of a thumbnail [pixels]
 // The surface of a sample, from above, by the colours of heights.
 async function thumbnail(surface) {
   const { heights, rows, columns } = await unpack(surface), canvas = element("canvas", { width: SMALL, height: SMALL });
-  const table = getComputedStyle(document.documentElement).getPropertyValue("--heights").split(";").map((one) => one.split(",").map(Number));
+  const table = getComputedStyle(document.documentElement).getPropertyValue("--heights").split("|").map((one) => one.split(",").map(Number));
   const context = canvas.getContext("2d"), image = context.createImageData(SMALL, SMALL), low = surface.low, size = surface.step * 65535;
   for (let at = 0; at < SMALL * SMALL; ++at) {
     const row = Math.floor(((SMALL - 1 - Math.floor(at / SMALL)) * rows) / SMALL), column = Math.floor(((at % SMALL) * columns) / SMALL);
