@@ -63,7 +63,8 @@ def tried(kind: Kind, seconds: float) -> tuple[float, float, float]:
         bridge = stack.enter_context(launch.Launched(row, device.option))
         session = live.opened(of_preset("silicon_in_air"), row, bridge.name, recorded=True)
         stack.callback(session.halt)
-        session.start("wall")
+        with launch.first():
+            session.start("wall")
         person = Person(device)
         stack.callback(person.ends.set)
         person.start()

@@ -120,7 +120,9 @@ class Service:
 
 
 async def serve(port: int) -> None:
-    """Serve until the process ends."""
+    """Serve until the process ends; before other programs where that is granted, as the bridge does."""
+    with suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
     service = Service(port=port, desk=Desk() if "NANOTOUCH_DESK" in os.environ else None)
     await service.start()
     print(service.port, flush=True)

@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import nanotouch as nt
 import numpy as np
@@ -104,7 +105,8 @@ def test_one_command_from_the_desk_to_a_recorded_force(
     ended = threading.Event()
 
     def hand() -> None:
-        """Down by 1 cm/s until it is felt: the surface is 5 mm below where it was when the session began."""
+        """Down by 1 cm/s until it is felt: the surface is 5 mm below where it was when the session began to push."""
+        awaited(lambda: omega.size > 0.0, "the session runs")
         begun = time.monotonic()
         while omega.pressed() > -0.5 and (elapsed := time.monotonic() - begun) < 20.0:
             omega.hold("down", 0.01 * elapsed)
@@ -222,3 +224,35 @@ def test_a_script_that_pushes_a_device_is_refused_in_words(omega: OnDesk) -> Non
         session = session_of(omega, running.name)
         with pytest.raises(nt.Error, match=r"a device, which a hand leads .x and y of the tip may be scripted"):
             session.run(operator=[nt.Input(0.2, 0.0, 0.0, 0.1)])
+
+
+@pytest.mark.skipif(not ALL, reason="make heavy runs it")
+def test_a_bridge_that_hangs_is_ended_and_leaves_no_force(
+    omega: OnDesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Stopped in the middle of a press, without the firmware's watchdog."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    begun: list[launch.Launched] = []
+    plain = launch.Launched.__init__
+
+    def noted(self: launch.Launched, *args: Any, **options: Any) -> None:
+        plain(self, *args, **options)
+        begun.append(self)
+
+    monkeypatch.setattr(launch.Launched, "__init__", noted)
+
+    def hand() -> None:
+        start = time.monotonic()
+        while omega.pressed() > -0.5 and (elapsed := time.monotonic() - start) < 20.0:
+            omega.hold("down", 0.01 * elapsed)
+            omega.desk.watchdog = 0.0
+            time.sleep(0.01)
+        os.kill(begun[0].process.pid, signal.SIGSTOP)
+
+    person = threading.Timer(1.0, hand)
+    person.start()
+    assert main(["live", "--hand", "forcedimension"]) == 2
+    person.join()
+    assert "does not answer any more; its force is gone" in capsys.readouterr().err
+    assert omega.size == 0.0

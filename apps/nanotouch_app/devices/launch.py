@@ -10,7 +10,8 @@ import signal
 import subprocess
 import sys
 import threading
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Self
 
@@ -18,7 +19,7 @@ from nanotouch.errors import DeviceError
 from nanotouch.touch.scratch import Scratch
 
 from nanotouch_app.devices import calibration
-from nanotouch_app.devices.bridge import TIMEOUT
+from nanotouch_app.devices.bridge import PRIORITY, TIMEOUT
 from nanotouch_app.devices.table import Device, named
 
 START = 30.0  # of a bridge on a busy machine; without a device it ends by itself, before that [s]
@@ -105,6 +106,22 @@ class Launched:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+@contextmanager
+def first() -> Iterator[None]:
+    """A session that starts in here runs before other programs, as its bridge does, where the system grants it: what
+    keeps it waiting keeps the hand's force waiting."""
+    if not hasattr(os, "sched_setscheduler"):
+        yield
+        return
+    before = os.sched_getscheduler(0), os.sched_getparam(0)
+    with suppress(OSError):
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, *before)
 
 
 def of_hand(hand: str) -> Launched:

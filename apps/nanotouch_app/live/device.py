@@ -22,13 +22,14 @@ from nanotouch.units import in_words
 
 from nanotouch_app.common import output, stop
 from nanotouch_app.devices import calibration, guide
-from nanotouch_app.devices.launch import Launched
+from nanotouch_app.devices.launch import Launched, first
 from nanotouch_app.devices.table import DEVICES, Device
 from nanotouch_app.live import display
 from nanotouch_app.live.hands import KINDS
 from nanotouch_app.live.subject import Subject
 
 USELESS = ("task", "film", "browser", "port", "page", "dark")
+BLOCK, ROWS = 5000, 65536  # rows that are kept at a time; blocks of them that no ring holds
 TURN, LINE = 0.02, 1.0  # of the loop; between two lines [s]
 FELT = 0.3  # a force that a hand feels [N]
 OWN = "a program of your own"
@@ -64,7 +65,8 @@ def touch(args: argparse.Namespace, subject: Callable[[], Subject]) -> int:
         if window is not None:
             stack.callback(_end, window)
         _say(session, device, window is not None)
-        session.start("wall")
+        with first():
+            session.start("wall")
         with stop.between_blocks() as check:
             try:
                 for _ in _turns(session, bridge, window, begun):
@@ -163,8 +165,10 @@ def line(frame: Any, session: nt.Session) -> str:
 
 
 def _keep(session: nt.Session, keeps: Any) -> None:
-    while keeps is not None:
-        block = session.read(5000)
+    """What was recorded so far; of a session that runs a second of it, for it may come faster than it is kept."""
+    blocks = 2 if session.progress.runs else ROWS
+    for _ in range(blocks if keeps is not None else 0):
+        block = session.read(BLOCK)
         if not len(block["time"]):
             return
         keeps.append(block)

@@ -123,13 +123,11 @@ class Session(Runs, Frozen):
             )  # fmt: skip
         described = {"scene": self._scene, "rig": self.rig, "settings": self._settings}
         self._opened_with: dict[str, Any] = {name: one.to_dict() for name, one in described.items()}
+        self._opened_with |= {"mode": mode, "stability_margin": self._finite_margin()}
         self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts).to_dict()
-        margin = self.stability_margin
-        self._opened_with |= {"mode": mode, "stability_margin": margin if math.isfinite(margin) else None}
-        pushed = {"particles": particles, "rod": rod}
-        self._opened_with |= {name: asdict(one) for name, one in pushed.items() if one is not None}
-        self.is_led = options.get("master") is not None
-        """a device is the master: its hand leads, and no script pushes it"""
+        pushed = (("particles", particles), ("rod", rod))
+        self._opened_with |= {name: asdict(one) for name, one in pushed if one is not None}
+        self.is_led = options.get("master") is not None  # by a device: no script pushes its hand
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
         own = options.get("master") or options.get("slave")
@@ -181,6 +179,11 @@ class Session(Runs, Frozen):
         if self.control == "own" and self.core.amounts is not None:
             settings = Settings.from_core(self.core.amounts)
         return margins.calm(self.rig, settings, self.plan.maximum_stiffness)
+
+    def _finite_margin(self) -> float | None:
+        """As JSON has it."""
+        margin = self.stability_margin
+        return margin if math.isfinite(margin) else None
 
     @property
     def stability_margin(self) -> float:
@@ -325,10 +328,9 @@ class Session(Runs, Frozen):
         return Metadata(entries, self._asked)
 
     def _now(self) -> dict[str, Any]:
-        margin = self.stability_margin
         return {
             "scene": self.scene.to_dict(), "settings": self.settings.to_dict(), "mode": self.mode,
-            "stability_margin": margin if math.isfinite(margin) else None, "plan": str(self.plan).splitlines(),
+            "stability_margin": self._finite_margin(), "plan": str(self.plan).splitlines(),
             "guaranteed_force": self.guarantee().force, "clearance": self.clearance,
         }  # fmt: skip
 
