@@ -78,6 +78,8 @@ corpus:  ## 2000 made files with known answers (SEED=first), or every file under
 
 heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings of an hour and under 50 kills, fits without memory; half an hour
 	@tools/setup.sh test
+	@build/dev/tests/c/test_rheology_loop 100000
+	@build/dev/tests/c/test_scene_relaxation 300
 	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/plan_pairs.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/refusals.py

@@ -238,7 +238,7 @@ static nt_status take_springs(nt_plan *plan, const nt_scene *scene, const nt_pla
     return NT_OK;
 }
 
-/* What a session computes per period, as one evaluation: counted by bench_rheology beside Hertz' [Hertz evaluations] */
+/* What a session computes per period, from the times of bench_rheology, at 20 ns a Hertz evaluation */
 #define COST_OF_TICK 4.0
 #define COST_OF_ARM 0.015 /* of each of a spring */
 

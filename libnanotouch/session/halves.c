@@ -78,7 +78,10 @@ static nt_status open_half(nt_session *session, nt_half half, nt_problem *proble
     } else if (!choice.backend) {
         status = nt_sim_slave_init(&session->sim.slave, &simulated);
         if (status == NT_E_UNSUPPORTED)
-            (void)nt_problem_set(problem, "tapping on a sample that keeps dents or relaxes", "no|yes", 1.0, 0.0, 0.0);
+            (void)nt_problem_set(problem,
+                                 setup->mode == NT_MODE_TAPPING ? "tapping on a sample that keeps dents or relaxes"
+                                                                : "a dynamic lever over a sample that relaxes",
+                                 "no|yes", 1.0, 0.0, 0.0);
         choice = (nt_hal_choice){nt_sim_slave_backend(), &session->sim.slave};
     }
     nt_hal *hal = is_master ? &session->master : &session->slave;
