@@ -45,9 +45,9 @@ ADDS = {
     "maps": "force maps, also on a cluster",
     "notebook": "tables and pictures in notebooks",
     "hands": "gamepad and SpaceMouse",
-    "forcedimension": "nanotouch live --hand forcedimension, with the maker's SDK",
-    "geomagic": "nanotouch live --hand geomagic, with the maker's OpenHaptics",
-    "wheel": "nanotouch live --hand wheel",
+    "forcedimension": "haptic devices of Force Dimension, with the maker's SDK",
+    "geomagic": "3D Systems Touch, with the maker's OpenHaptics",
+    "wheel": "wheels with force feedback",
 }
 """what each extra adds"""
 
