@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zlib import crc32
 
 import pytest
 
@@ -19,6 +21,9 @@ if TYPE_CHECKING:
 
 OPTION = "--nt-update-golden"
 FOLDER = "golden"
+LONGEST_NAME = 120  # of a file system's 255, with room for what is written beside it
+OWNERS = pytest.StashKey[dict[Path, str]]()  # of each file, the test that has used it in this run
+WRITTEN = pytest.StashKey[set[Path]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -34,38 +39,62 @@ def nt_session() -> Iterator[Callable[..., Session]]:
     are options as of the class. Threads that it started are stopped when the test ends."""
     from nanotouch.touch.session import Session
 
-    opened: list[Session] = []
+    with ExitStack() as stack:  # stops every one, also where another raises what its device has raised
 
-    def open_session(*args: Any, **options: Any) -> Session:
-        opened.append(Session(*args, **options))
-        return opened[-1]
+        def open_session(*args: Any, **options: Any) -> Session:
+            session = Session(*args, **options)
+            stack.callback(_halt, session)
+            return session
 
-    yield open_session
-    for session in opened:
-        if session.progress.runs:
-            session.halt()
+        yield open_session
 
 
 @pytest.fixture
 def nt_golden(request: pytest.FixtureRequest) -> Callable[..., None]:
     """``nt_golden(recording, name="", tolerances=None)`` compares with ``golden/TEST.mcap`` beside the file of the test
     (:func:`nanotouch.testing.assert_same`). ``pytest --nt-update-golden`` writes that file. A slice such as
-    ``recording[::100]`` keeps it small."""
+    ``recording[::100]`` keeps it small. A file belongs to one test; a second call in a test compares with it, too."""
     folder = Path(request.path).parent / FOLDER
-    stem = re.sub(r"[^\w.-]+", "_", request.node.name).strip("_")
+    owners = request.config.stash.setdefault(OWNERS, {})
+    written = request.config.stash.setdefault(WRITTEN, set())
     renew = bool(request.config.getoption(OPTION))
 
     def compare(recording: Recording, name: str = "", tolerances: Mapping[str, float] | None = None) -> None:
+        from nanotouch.testing._given import rows_of
         from nanotouch.testing.comparison import assert_same
         from nanotouch.touch import record
 
-        path = folder / (f"{stem}-{name}.mcap" if name else f"{stem}.mcap")
-        if renew:
+        rows_of(recording)
+        path = folder / f"{_stem(request.node.name, name)}.mcap"
+        owner = owners.setdefault(path, request.node.nodeid)
+        if owner != request.node.nodeid:
+            pytest.fail(
+                f"{path} is that of {owner}: give one of them a name, nt_golden(recording, name)", pytrace=False
+            )
+        if renew and path not in written:
             folder.mkdir(exist_ok=True)
             record.write(path, recording)
+            written.add(path)
         elif not path.exists():
             pytest.fail(f"there is no {path} to compare with: pytest {OPTION} writes it", pytrace=False)
-        else:
-            assert_same(recording, record.read(path), tolerances)
+        expected = record.read(path)
+        if expected.incomplete:
+            pytest.fail(f"{path} is damaged ({expected.incomplete}): pytest {OPTION} writes it anew", pytrace=False)
+        assert_same(recording, expected, tolerances)
 
     return compare
+
+
+def _halt(session: Session) -> None:
+    if session.progress.runs:
+        session.halt()
+
+
+def _stem(test: str, name: str) -> str:
+    """The name of a file for a test, and for one of its recordings."""
+    if not re.fullmatch(r"[\w.-]*", name):
+        pytest.fail(f"name = {name!r}: valid are letters, digits, '_', '.' and '-'", pytrace=False)
+    stem = re.sub(r"[^\w.-]+", "_", test).strip("_") + f"-{name}" * bool(name)
+    if len(stem.encode()) <= LONGEST_NAME:
+        return stem
+    return f"{stem.encode()[: LONGEST_NAME - 9].decode(errors='ignore')}-{crc32(stem.encode()):08x}"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Any, Literal
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch.errors import InvalidValue
+from nanotouch.testing._given import TIME, number, rows_of
 from nanotouch.touch import _stopped
 from nanotouch.touch.columns import COLUMNS, STATES
 from nanotouch.touch.hal import Mailbox, Master, Rehearsed, Replay, SharedObject, Slave, rehearse
@@ -18,11 +20,14 @@ from nanotouch.touch.session import Session
 from nanotouch.units import in_words
 
 ROUNDING = 1e-9  # of a limit: what the sums of a promise may lose
+LARGEST_LOAD = 1.0  # N, of any scene (range.maximum_load)
+ON_THE_SAMPLE = ("tip_force", "tip_force_x", "tip_force_y", "slave_force")
+OPENED_WITH = ("scene", "rig", "settings", "control")  # what decides a promise
 
 
 def assert_runs(recording: Recording) -> None:
-    """The session was in RUN in every period."""
-    state = _column(recording, "state")
+    """The session was in RUN in every period that was recorded."""
+    state = _states(recording)
     stopped = np.flatnonzero(state != 0)
     if not len(stopped):
         return
@@ -46,25 +51,35 @@ def assert_force_below(recording: Recording, limit: float, channel: str = "tip_f
         ``"tip_force"`` is the true force of a simulated sample. A real one has ``"slave_force"``, as it was measured,
         with its noise; the hand has ``"motor_force"`` and ``"operator_force"``.
     """
+    limit = number("limit", limit, "N")
     if not 0.0 < limit < math.inf:
         raise InvalidValue(f"limit = {limit} N: valid is a finite force above 0 N")
     if channel not in COLUMNS or COLUMNS[channel].unit != "N":
         forces = ", ".join(name for name, column in COLUMNS.items() if column.unit == "N")
         raise InvalidValue(f"channel {channel!r} is no force; valid are {forces}")
-    _assert_below(recording, channel.replace("_", " "), np.abs(_column(recording, channel)), limit)
+    if channel in ON_THE_SAMPLE and limit > LARGEST_LOAD:
+        raise InvalidValue(f"limit = {limit:g} N: no load on a sample is above {LARGEST_LOAD:g} N; 400 nN are 400e-9")
+    _assert_below(recording, channel.replace("_", " "), _column(recording, channel), limit)
 
 
 def assert_guarantee_kept(session: Session, recording: Recording) -> None:
     """What the open session promises (:meth:`nanotouch.Session.guarantee`) held: the force on the sample along z and
-    sideways, and the motor's force on the hand. Where a fault was injected, the promise is that with one failure."""
+    sideways, and the motor's force on the hand. Where a fault was injected, the promise is that with one failure.
+
+    It takes the true force of a simulated sample; of a slave of your own take :func:`assert_force_below` with
+    ``"slave_force"``."""
+    time = _column(recording, "time")
+    _is_of(session, recording)
     promised = session.guarantee()
-    force = promised.with_failure if recording.metadata.get("faults") else promised.force
-    force += promised.zero_drift * float(recording.time[-1] if len(recording) else 0.0)
-    _assert_below(recording, "tip force", np.abs(_column(recording, "tip_force")), force)
-    if "tip_force_x" in recording and promised.moves_sideways and not recording.metadata.get("faults"):
+    failed = bool(recording.metadata.get("faults"))
+    force = promised.with_failure if failed else promised.force
+    if not force < math.inf:
+        raise InvalidValue(f"the session promises no bound of the tip force{' with one failure' * failed}: {force} N")
+    _assert_below(recording, "tip force", _column(recording, "tip_force"), force + promised.zero_drift * time)
+    if "tip_force_x" in recording and promised.moves_sideways and not failed:
         sideways = np.hypot(recording.tip_force_x, recording.tip_force_y)
         _assert_below(recording, "sideways tip force", sideways, promised.lateral_force)
-    pushes = np.abs(_column(recording, "motor_force"))
+    pushes = _column(recording, "motor_force")
     if "motor_force_x" in recording:
         pushes = np.sqrt(pushes**2 + recording.motor_force_x**2 + recording.motor_force_y**2)
     _assert_below(recording, "motor force", pushes, promised.hand.force)
@@ -74,25 +89,33 @@ def assert_reacts(
     recording: Recording, state: Literal["HOLD", "RETRACT", "LATCHED"], *, after: float, within: float
 ) -> None:
     """The session went to `state`, or to a stronger one, at most `within` [s] after the time `after` [s], and not
-    before it."""
+    before it. An event happens in the period that is nearest to `after`."""
     if state not in STATES[1:]:
         raise InvalidValue(f"state {state!r}: valid are {', '.join(STATES[1:])}")
+    after, within = number("after", after, "s"), number("within", within, "s")
     if not within > 0.0:
         raise InvalidValue(f"within = {within} s: valid is above 0 s")
-    time, found = _column(recording, "time"), _column(recording, "state")
-    if not len(time) or not time[0] <= after <= time[-1]:
-        span = f"{time[0]:.6g} .. {time[-1]:.6g} s" if len(time) else "no time"
-        raise InvalidValue(f"after = {after} s: the recording holds {span}")
+    found = _states(recording)
+    time = recording.time
+    if not time[0] <= after <= time[-1]:
+        raise InvalidValue(f"after = {after} s: the recording holds {time[0]:{TIME}} .. {time[-1]:{TIME}} s")
     reached = np.flatnonzero(found >= STATES.index(state))
-    half = 0.5 / _rate(recording)  # periods are at multiples of theirs, but for rounding
-    if len(reached) and time[reached[0]] < after - half:
-        raise AssertionError(f"{_state_at(recording, int(reached[0]))}, before {after:.6g} s")
-    if len(reached) and time[reached[0]] <= after + within + half:
-        return
-    late = f"{_state_at(recording, int(reached[0]))}, {_after(time[reached[0]] - after)} later" if len(reached) else (
-        f"it ended in {_stopped.of_columns(recording.columns)}"
-    )  # fmt: skip
-    raise AssertionError(f"no {state} within {_after(within)} of {after:.6g} s; {late}")
+    if not len(reached):
+        ended = _stopped.of_columns(recording.columns)
+        raise AssertionError(f"no {state} within {_after(within)} of {after:{TIME}} s; it ended in {ended}")
+    row, rate = int(reached[0]), _rate(recording)
+    ticks = np.rint((time - time[0]) * rate)
+    event = math.floor((after - time[0]) * rate + 0.5)
+    if ticks[row] < event:
+        raise AssertionError(f"{_state_at(recording, row)}, before {after:{TIME}} s")
+    if row and ticks[row - 1] < event - 1:
+        raise InvalidValue(
+            f"no rows between {time[row - 1]:{TIME}} s and {time[row]:{TIME}} s: whether {state} came before "
+            f"{after:{TIME}} s is not known; give every period"
+        )
+    if ticks[row] - event > within * rate * (1.0 + ROUNDING):
+        late = f"{_state_at(recording, row)}, {_after(time[row] - after)} later"
+        raise AssertionError(f"no {state} within {_after(within)} of {after:{TIME}} s; {late}")
 
 
 def assert_conforms(
@@ -109,6 +132,8 @@ def assert_conforms(
     duration : float
         How long it is read and written in each of two lives [s].
     """
+    if not 1e-3 <= number("duration", duration, "s") <= 3600.0:
+        raise InvalidValue(f"duration = {duration} s: valid is 0.001 .. 3600 s")
     waits = isinstance(half, Mailbox)  # its program lives on the clock
     try:
         return rehearse(half, slave=slave, duration=duration, real_time=waits)
@@ -116,17 +141,39 @@ def assert_conforms(
         raise AssertionError(f"the contract of a backend is broken: {broken}") from None
 
 
-def _assert_below(recording: Recording, name: str, force: NDArray[np.float64], limit: float) -> None:
-    time = recording.time
+def _is_of(session: Session, recording: Recording) -> None:
+    """A promise of one session says nothing about a recording of another."""
+    opened = session.metadata()
+    for name in OPENED_WITH:
+        if name in recording.metadata and _plain(recording.metadata[name]) != _plain(opened.get(name)):
+            raise InvalidValue(
+                f"the recording is of a session with another {name}: this session promises nothing of it"
+            )
+
+
+def _plain(value: object) -> Any:
+    """As it comes back from a file, and NaN equal to itself."""
+    return json.loads(json.dumps(value, default=str), parse_constant=str)
+
+
+def _assert_below(
+    recording: Recording, name: str, force: NDArray[np.float64], limit: float | NDArray[np.float64]
+) -> None:
+    """`force` is within +- `limit` in every row."""
+    time, most = recording.time, np.broadcast_to(limit, force.shape)
     unknown = np.flatnonzero(np.isnan(force))
     if len(unknown):
-        raise AssertionError(f"{name} is not known at {time[unknown[0]]:.6g} s: NaN in {len(unknown)} periods")
-    above = np.flatnonzero(force > limit * (1.0 + ROUNDING))
+        rows = f"{len(unknown)} period{'s' * (len(unknown) != 1)}"
+        simulated = name.endswith("tip force") and len(unknown) == len(force)
+        hint = "; only a simulated sample has it, a real one has slave_force" if simulated else ""
+        raise AssertionError(f"{name} is not known at {time[unknown[0]]:{TIME}} s: NaN in {rows}{hint}")
+    size = np.abs(force)
+    above = np.flatnonzero(size > most * (1.0 + ROUNDING))
     if not len(above):
         return
-    first, worst = int(above[0]), int(np.argmax(force))
-    text = f"{name} {in_words(force[worst], 'N', 3)} exceeded {in_words(limit, 'N', 3)}"
-    where = f"at {time[first]:.6g} s" + (f", and most at {time[worst]:.6g} s" if worst != first else "")
+    first, worst = int(above[0]), int(above[np.argmax(size[above])])
+    text = f"{name} {in_words(force[worst], 'N', 3)} exceeded {in_words(most[worst], 'N', 3)}"
+    where = f"at {time[first]:{TIME}} s" + (f", and most at {time[worst]:{TIME}} s" if worst != first else "")
     raise AssertionError(f"{text} {where}; {_reaction(recording, first)}")
 
 
@@ -134,14 +181,15 @@ def _reaction(recording: Recording, first: int) -> str:
     """What the supervisor did from this row on."""
     if "state" not in recording:
         return "no state was recorded"
-    state = recording.state
+    state = _states(recording)
     if state[first] != 0:
         return f"it was in {STATES[int(state[first])]}"
     stopped = np.flatnonzero(state[first:] != 0)
     if not len(stopped):
         return "nothing stopped it"
-    ticks = int(stopped[0])
-    return f"{STATES[int(state[first + ticks])]} came {ticks} tick{'s' * (ticks != 1)} later"
+    row = first + int(stopped[0])
+    ticks = round((recording.time[row] - recording.time[first]) * _rate(recording))  # rows may be a selection
+    return f"{STATES[int(state[row])]} came {ticks} tick{'s' * (ticks != 1)} later"
 
 
 def _state_at(recording: Recording, row: int) -> str:
@@ -149,8 +197,18 @@ def _state_at(recording: Recording, row: int) -> str:
     return _stopped.in_words(int(recording.state[row]), float(recording.time[row]), bits)
 
 
+def _states(recording: Recording) -> NDArray[Any]:
+    found = _column(recording, "state")
+    unknown = np.flatnonzero(found >= len(STATES))
+    if len(unknown):
+        row = int(unknown[0])
+        states = ", ".join(STATES)
+        raise InvalidValue(f"state {found[row]} at {recording.time[row]:{TIME}} s: valid are 0 .. 3 ({states})")
+    return found
+
+
 def _column(recording: Recording, name: str) -> NDArray[Any]:
-    if name not in recording:
+    if name not in rows_of(recording):
         raise InvalidValue(f"the recording has no {name}; recorded: {', '.join(recording.columns)}")
     return recording.columns[name]
 
@@ -160,7 +218,7 @@ def _rate(recording: Recording) -> float:
     if found is not None:
         return float(found)
     steps = np.diff(recording.time)
-    return 1.0 / float(np.median(steps)) if len(steps) else math.inf
+    return 1.0 / float(np.median(steps)) if len(steps) else 1.0  # of one row every rate tells the same
 
 
 def _after(seconds: float) -> str:

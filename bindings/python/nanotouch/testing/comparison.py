@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch.errors import InvalidValue
+from nanotouch.testing._given import TIME, number, recording_of, rows_of
 from nanotouch.touch.columns import COLUMNS
 from nanotouch.touch.record import Recording
 from nanotouch.units import in_words
@@ -26,14 +27,14 @@ def assert_same(recording: Recording, expected: Recording, tolerances: Mapping[s
         What was recorded, and what is right. Channels that only `recording` has are not compared.
     tolerances : mapping of str to float, optional
         Largest difference of a channel, in its SI unit. By default a millionth of the channel's largest value in
-        `expected`, so that another compiler passes; whole numbers have to be equal. NaN equals NaN.
+        `expected`, so that another compiler passes; whole numbers have to be equal. NaN equals NaN, and nothing else;
+        with infinity that is all that is compared.
     """
-    given = dict(tolerances or {})
-    for name, value in given.items():
-        if name not in expected:
-            raise InvalidValue(f"tolerances: no channel {name!r} is expected; valid are {', '.join(expected.columns)}")
-        if not value >= 0.0:
-            raise InvalidValue(f"tolerances: {name} = {value} {COLUMNS[name].unit}: valid is 0 or more")
+    rows_of(expected, "expected")  # of nothing that is expected everything would be true
+    if expected.incomplete:
+        raise InvalidValue(f"expected is incomplete: {expected.incomplete}")
+    recording_of(recording)
+    given = _checked(tolerances, expected)
     missing = [name for name in expected.columns if name not in recording]
     if missing:
         raise AssertionError(f"not recorded: {', '.join(missing)}")
@@ -46,6 +47,20 @@ def assert_same(recording: Recording, expected: Recording, tolerances: Mapping[s
     ]  # fmt: skip
     if lines:
         raise AssertionError("\n".join([f"{len(lines)} of {len(expected.columns)} channels differ:", *lines]))
+
+
+def _checked(tolerances: Mapping[str, float] | None, expected: Recording) -> dict[str, float]:
+    if tolerances is not None and not isinstance(tolerances, Mapping):
+        raise InvalidValue(f"tolerances = {tolerances!r}: valid is a mapping of channels to differences")
+    given = {}
+    for name, value in (tolerances or {}).items():
+        if name not in expected:
+            raise InvalidValue(f"tolerances: no channel {name!r} is expected; valid are {', '.join(expected.columns)}")
+        unit = COLUMNS[name].unit
+        given[name] = number(f"tolerances: {name}", value, unit)
+        if not given[name] >= 0.0:
+            raise InvalidValue(f"tolerances: {name} = {value} {unit}: valid is 0 or more")
+    return given
 
 
 def _difference(recording: Recording, expected: Recording, name: str, tolerance: float | None) -> str:
@@ -62,9 +77,9 @@ def _difference(recording: Recording, expected: Recording, name: str, tolerance:
     first, worst = int(wrong[0]), int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))
     unit = COLUMNS[name].unit
     said = f"  {name}: {len(wrong)} of {len(a)} rows by more than {_told(tolerance, unit)}; first at "
-    said += f"{recording.time[first]:.6g} s: {_told(a[first], unit)}, expected {_told(b[first], unit)}"
+    said += f"{recording.time[first]:{TIME}} s: {_told(a[first], unit)}, expected {_told(b[first], unit)}"
     if worst != first:
-        said += f"; most at {recording.time[worst]:.6g} s: {_told(a[worst], unit)}, expected {_told(b[worst], unit)}"
+        said += f"; most at {recording.time[worst]:{TIME}} s: {_told(a[worst], unit)}, expected {_told(b[worst], unit)}"
     return said
 
 
@@ -74,8 +89,8 @@ def _largest(values: NDArray[Any]) -> float:
 
 
 def _told(value: float, unit: str) -> str:
-    return in_words(float(value), unit, 6) if unit else f"{value:.6g}"
+    return in_words(float(value), unit, 6) if unit else f"{value:.10g}"  # all bits of whole numbers
 
 
 def _ends(recording: Recording) -> str:
-    return f"; it ends at {recording.time[-1]:.6g} s" if len(recording) else ""
+    return f"; it ends at {recording.time[-1]:{TIME}} s" if len(recording) else ""

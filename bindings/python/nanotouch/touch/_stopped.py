@@ -26,7 +26,7 @@ def in_words(state: int, since: float, bits: int) -> str:
     """ "RUN", or "LATCHED at 0.09 s: sensor stuck"."""
     if state == RUN:
         return STATES[state]
-    return f"{STATES[state]} at {since:.4g} s: {', '.join(reasons_of(bits)) or 'no reason is known'}"
+    return f"{STATES[state]} at {since:.9g} s: {', '.join(reasons_of(bits)) or 'no reason is known'}"
 
 
 def of_columns(columns: Mapping[str, NDArray[Any]]) -> str:
