@@ -65,30 +65,40 @@ class Spread(NamedTuple):
     covariance: Floats
 
 
-def fit_whole(
-    whole: Whole, uncertainties: Uncertainties, sample: Sample, assumptions: list[str], tip: Tip
-) -> FitResult:
-    """Fit, and all that is known about it."""
-    _, report, law, track = whole
+def _solved(whole: Whole) -> tuple[Whole, Found]:
+    """The fit with any drift of the force taken off, and the curve without it."""
+    _, _, law, track = whole
     try:
         found = solve(extension(), law, track)
     except SolverError as error:
         raise SolverError(f"{whole.curve.name}: {error}; {_cause(law, track)}") from error
     track, found = without_drift(law, track, found)
-    whole = whole._replace(track=track)
+    return whole._replace(track=track), found
+
+
+def _verdict(law: Law, track: Track, found: Found, notes: list[str]) -> tuple[str, str]:
+    """Why it determines nothing, and what speaks against it; the latter is noted, too."""
+    reason = _wrong(law, found, track)
+    doubt = "" if reason else doubt_of(law, track, found)
+    notes += [f"{doubt}: none of these is a property of the sample"] if doubt else []
+    return reason, doubt
+
+
+def fit_whole(
+    whole: Whole, uncertainties: Uncertainties, sample: Sample, assumptions: list[str], tip: Tip
+) -> FitResult:
+    """Fit, and all that is known about it."""
+    whole, found = _solved(whole)
+    _, report, law, track = whole
     spread = _spread(whole, found, uncertainties)
     identifiable = _identifiable(law, found, track, spread)
     notes = list(report.notes) + _notes(whole, found)
     _turn(spread.values, spread.interval)
     if sample.poisson_ratio is not None:
         _add_youngs_modulus(sample, spread, uncertainties, notes, assumptions)
-    reason, rms = _wrong(law, found, track), found.rms(track)
-    doubt = "" if reason else doubt_of(law, track, found)
-    notes += [f"{doubt}: none of these is a property of the sample"] if doubt else []
+    rms = found.rms(track)
+    reason, doubt = _verdict(law, track, found, notes)
     return FitResult(
-        model=law.model.name,
-        title=law.model.title,
-        valid=law.model.valid,
         branch="approach" if len(track.starts) == 1 else "whole curve",
         values=spread.values,
         sigma=spread.sigma,
@@ -102,15 +112,13 @@ def fit_whole(
         force=track.force[track.fitted],
         fitted=found.fitted[track.fitted],
         indentation=found.indentation[track.fitted],
+        **_of_law(law),
         **_not_of_this_law(),
         measured_pull_off_force=report.pull_off_force,
         measured_snap_in_force=report.snap_in_force,
         residual_rms=rms,
         misfit=rms / law.noise,
         contact_radius=_contact_radius(law, found),
-        radius=law.radius,
-        half_angle=law.half_angle,
-        spring_constant=law.spring_constant,
         converged=bool(found.raw["converged"]),
         iterations=int(found.raw["iterations"]),
         report=report,
@@ -163,6 +171,17 @@ def _open_end(law: Law, found: Found, track: Track) -> str:
     if not said:
         return ""
     return f": {', '.join(said)}; a kernel with fewer arms, or another, may do"
+
+
+def _of_law(law: Law) -> dict[str, Any]:
+    return {
+        "model": law.model.name,
+        "title": law.model.title,
+        "valid": law.model.valid,
+        "radius": law.radius,
+        "half_angle": law.half_angle,
+        "spring_constant": law.spring_constant,
+    }
 
 
 def _not_of_this_law() -> Any:
