@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Written by nanotouch 0.1.0: do not edit. Needs nanotouch_single.h and .c (tools/single.py).
+ * Written by nanotouch 0.2.0: do not edit. Needs nanotouch_single.h and .c (tools/single.py).
  *
  * plan_force: the force over the gap, 31 pieces. It is within 0.001 of max(|F|, 18 nN) of the plan's
  * where the gap is 0 m or more from a fold, a jump and first touch. The plan's own bound is below.

@@ -5,7 +5,7 @@
 
 #include "nanotouch/status.h"
 
-#define NT_VERSION "0.1.0"
+#define NT_VERSION "0.2.0"
 
 #ifdef __cplusplus
 extern "C" {
