@@ -102,7 +102,8 @@ def test_a_fitted_map_is_touched_with_the_modulus_and_adhesion_of_each_place() -
     assert slope == pytest.approx(3e-9 / 600e-9, rel=0.1)
     plan = scene.plan(surface=surface)
     assert plan.explain()["properties"]["work_of_adhesion"] == pytest.approx((WEAK, STRONG), rel=0.25)
-    record = nt.Session(scene, surface=surface, path=[(100e-9, 100e-9)], minimum_margin=0.0).run(2.5)
+    session = nt.Session(scene, surface=surface, path=[(100e-9, 100e-9)], minimum_margin=0.0)
+    record = session.run(6.0)  # the soft map allows little force, so the hand comes down slowly
     assert (record.columns["gap"] < 0.0).any()
 
 

@@ -60,7 +60,7 @@ def _model(name: str, model: contact.Model, prepare: Callable[[float, Floats], C
     return Solver(name, force, indentation, radius, prepare or (lambda lam, d: lambda: force(lam, d)))
 
 
-def _tier(name: str, tier: reduced.Tier, fixed: float | None = None) -> Solver:
+def _tier(name: str, tier: contact.Tier, fixed: float | None = None) -> Solver:
     """A tier of Maugis-Dugdale, at a fixed lambda if one is given. At given loads every tier is the exact solver; its
     radius is that at the exact indentation."""
 
