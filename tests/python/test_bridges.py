@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -148,6 +149,17 @@ MISSING = [
 ]
 
 
+@contextmanager
+def _signals_kept() -> Iterator[None]:
+    """A program's own answers to signals are not those of the tests that follow."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, answer in before.items():
+            signal.signal(number, answer)
+
+
 @pytest.mark.parametrize(("name", "what", "words"), MISSING, ids=lambda value: str(value)[:14])
 def test_what_is_missing_is_said_in_words(
     name: str, what: str | None, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
@@ -163,7 +175,9 @@ def test_what_is_missing_is_said_in_words(
     kind = next(kind for kind in KINDS if kind.name == ("wheel" if name == "inverse3" else name))
     with placed(kind, tmp_path, monkeypatch, present=float(what == "denied")):
         monkeypatch.setenv("NANOTOUCH_MOCK", what or "")
-        assert bridge.main([name, f"missing-{os.getpid()}", "--option", "ws://127.0.0.1:1" * (name == "inverse3")]) == 2
+        with _signals_kept():
+            option = "ws://127.0.0.1:1" * (name == "inverse3")
+            assert bridge.main([name, f"missing-{os.getpid()}", "--option", option]) == 2
     said = capsys.readouterr().err.strip()
     assert "\n" not in said
     assert re.search(words, said), said

@@ -305,7 +305,7 @@ map prose.txt --threads -1          | '-1' | 0 .. 1024
 map prose.txt --threads x           | 'x' | whole number
 map prose.txt --model x             | 'x' | hertz, dmt, jkr, maugis
 map                                 | required: FILE
-reproduce --figure 7                | --figure 7 | 5, 6, 9, 10, 11, 16, 17, 18, 19
+reproduce --figure 7                | --figure 7 | 5, 6, 9, 10, 11, 15, 16, 17, 18, 19
 reproduce --figure -5               | --figure -5 | 5, 6, 9
 reproduce --figure x                | 'x' | int
 workflow --pixels 0                 | --pixels 0 | 48 .. 512

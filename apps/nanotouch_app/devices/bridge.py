@@ -197,7 +197,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program."""
     args = _parser().parse_args(arguments)
     stopped = threading.Event()
-    _run_first()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stopped.set())
     if args.guard:
@@ -219,4 +218,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
+    _run_first()
     sys.exit(main())
