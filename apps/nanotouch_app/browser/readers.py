@@ -14,7 +14,7 @@ from nanotouch.errors import Error
 from nanotouch_app.browser.update import Summary, message_text
 
 Message = dict[str, Any]
-KEPT = ("sliders", "world", "guide", "dents", "task", "particles")  # messages that one who comes later is told, too
+KEPT = ("sliders", "world", "guide", "dents", "task", "particles")  # sent again to a page that joins later
 
 
 class Reader:

@@ -204,10 +204,10 @@ def _carried(bench: Bench) -> tuple[Floats, float]:
     bench.law = None
     if carry.wrong:
         raise DeviceError(f"{bench.title}: {carry.wrong}. It carries nothing now; calibrate again, with your hands off")
-    forces = {way: np.array([force for w, force in carry.rows if w == way]) for way in (1.0, -1.0)}
+    forces = {sense: np.array([force for s, force in carry.rows if s == sense]) for sense in (1.0, -1.0)}
     if min(map(len, forces.values())) < 20:
         raise DeviceError(f"{bench.title}: too few readings came while the handle was moved")
-    down, up = (np.median(_late(forces[way]), axis=0) for way in (1.0, -1.0))
+    down, up = (np.median(_late(forces[sense]), axis=0) for sense in (1.0, -1.0))
     return 0.5 * (down + up), float(max(0.0, 0.5 * (down - up)[2]))
 
 

@@ -78,7 +78,7 @@ def understood(data: str | bytes) -> dict[str, float]:
 
 
 class Link:
-    """A connection: what the controller said last, and what it is told."""
+    """A connection: the last reply of the controller, and the commands to it."""
 
     def __init__(self, setup: Setup) -> None:
         self.setup, self.values, self.messages = setup, dict[str, float](), 0
@@ -249,7 +249,7 @@ async def run(name: str, setup: Setup, timeout: float) -> None:
 
 
 def rescue(host: str, ports: Sequence[int], patience: float, limits: Limits) -> bool:
-    """The watcher's: withdraw by a new connection, for LONGEST at the most. Whether it was acknowledged."""
+    """The watcher's withdrawal over a new connection, for at most LONGEST. Returns whether it was acknowledged."""
     due = time.monotonic() + nanonis_watcher.LONGEST
 
     async def once() -> None:

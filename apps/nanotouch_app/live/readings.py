@@ -155,7 +155,7 @@ def _split(painter: Painter, words: str, upper: float, lower: float) -> tuple[st
 
 
 def _lower(palette: Palette, seen: Seen, about: str) -> tuple[str, Colour]:
-    """The second line: what a slider does, or what was told last."""
+    """The second line: the effect of a slider, or the last message."""
     if about:
         return about, palette.accent
     if seen.notes:
