@@ -125,15 +125,15 @@ nt_status nt_testing_reacts(const nt_record *records, long count, const nt_react
         return refused(finding, "within: valid is a finite time above 0 s");
     if (!(wanted->after >= records[0].time && wanted->after <= records[count - 1].time))
         return refused(finding, "after: it must lie within the records");
-    const double half = count > 1 ? 0.5 * (records[1].time - records[0].time) : 0.0; /* periods, but for rounding */
+    const double rounding = count > 1 ? 1e-6 * (records[1].time - records[0].time) : 0.0; /* of the times */
     char text[160];
     for (long i = 0; i < count; ++i) {
-        if (records[i].state < wanted->state)
-            continue;
+        if (records[i].state < wanted->state || records[i].state > NT_LATCHED)
+            continue; /* a number that is no state is no reaction */
         say_state(&records[i], text, sizeof text);
-        if (records[i].time < wanted->after - half)
+        if (records[i].time < wanted->after - rounding)
             return found(finding, "%s, before %.6g s", text, wanted->after);
-        if (records[i].time <= wanted->after + wanted->within + half)
+        if (records[i].time <= wanted->after + wanted->within + rounding)
             return NT_OK;
         return found(finding, "no %s within %.3g s of %.6g s; %s", state_of(wanted->state), wanted->within,
                      wanted->after, text);

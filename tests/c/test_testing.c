@@ -81,7 +81,12 @@ static void a_reaction_has_its_time(void **state)
     assert_string_equal(finding.text, "no HOLD within 0.0002 s of 1.2001 s; it ended in RUN");
     records[3].state = records[4].state = records[5].state = NT_RETRACT; /* stronger: it counts */
     assert_int_equal(nt_testing_reacts(records, ROWS, &wanted, &finding), NT_OK);
+    wanted.within = 1.7e-4; /* not rounded up to the next period */
+    assert_int_equal(nt_testing_reacts(records, ROWS, &wanted, &finding), NT_E_STATE);
+    records[2].state = 7; /* no state, so no reaction */
     wanted.within = 1e-4;
+    assert_int_equal(nt_testing_reacts(records, ROWS, &wanted, &finding), NT_E_STATE);
+    records[2].state = NT_RUN;
     assert_int_equal(nt_testing_reacts(records, ROWS, &wanted, &finding), NT_E_STATE);
     assert_string_equal(finding.text, "no HOLD within 0.0001 s of 1.2001 s; RETRACT at 1.2003 s");
     wanted.after = 1.2004;
