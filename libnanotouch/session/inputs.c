@@ -35,8 +35,8 @@ static nt_status check_hand(const nt_session *session, const nt_input *input, nt
             return nt_problem_set(problem, "input.master_position", "m", input->master_position[i], -travel, travel);
         if (!session->simulates[NT_HALF_MASTER] && (input->holds || input->operator_force[i] != 0.0)) {
             (void)nt_problem_set(problem,
-                                 "a script that pushes a master that is a device, which a hand leads (x and y of the "
-                                 "tip may be scripted): input.operator_force",
+                                 "input.operator_force of a device, which a hand leads (x and y of the tip may be "
+                                 "scripted)",
                                  "N", input->operator_force[i], 0.0, 0.0);
             return NT_E_UNSUPPORTED;
         }
