@@ -48,6 +48,7 @@ set(nanotouch_sources_contact
     contact/maugis/table.c
     contact/maugis/tier.c
     contact/model_error.c
+    contact/ramp.c
     contact/reduced.c
     contact/shapes/jkr_shape.c
     contact/shapes/rim.c

@@ -56,7 +56,7 @@ def look(folder: Path) -> None:
 def main() -> None:
     """Write live.gif and live.png beside this file."""
     contact = nt.Contact(radius=2e-6, effective_modulus=20e6, work_of_adhesion=0.03, cohesive_stress=5e6)
-    curve = curves.synthesise(contact, spring_constant=1.0, noise=0.2e-9, depth=600e-9, clearance=1.5e-6)
+    curve = curves.synthesize(contact, spring_constant=1.0, noise=0.2e-9, depth=600e-9, clearance=1.5e-6)
     with TemporaryDirectory() as folder:
         image = Path(folder) / "your image.gwy"
         images.write(image, nt.surface.dots(size=400e-9, pixels=256, count=16, seed=4))

@@ -17,7 +17,7 @@ def main() -> None:
     modulus = np.where((x // 0.25 + y // 0.25) % 2 == 0, 2e8, 1e9)
     work = np.where((x - 0.65) ** 2 + (y - 0.35) ** 2 < 0.2**2, 0.04, 0.015)
     height = np.where(x + 2 * y > 1.6, 5e-9, 0.0)
-    sample = maps.synthesise(
+    sample = maps.synthesize(
         modulus, work, height, radius=20e-9, spring_constant=1.0, noise=30e-12, points=1000, depth=20e-9, tilt=1e-4
     )
     sample.values[5:8, 40:43, 100] = np.nan

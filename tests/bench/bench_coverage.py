@@ -60,7 +60,7 @@ def synthetic(model: str, seed: int, stiffness: float = STIFFNESS, kind: str = "
     if model == "maugis":
         told["cohesive_range"] = RANGE
     white = NOISE if kind == "white" else 0.0
-    curve = nt.curves.synthesise(
+    curve = nt.curves.synthesize(
         contact, model, spring_constant=stiffness, noise=white, offset=1e-9, tilt=1e-4 * rng.standard_normal(),
         drift=DRIFT * rng.standard_normal(), sensitivity_error=error[0], spring_constant_error=error[1],
         contact_point=CONTACT, seed=seed, half_angle=told.get("half_angle"),

@@ -90,7 +90,7 @@ def fit_of(model: str, jitter: float) -> Callable[[], Any]:
 
 def curve_of(model: str) -> Any:
     contact = nt.Contact(RADIUS, 5e6, 0.05 if model in ("dmt", "jkr", "maugis") else 0.0, cohesive_range=2e-9)
-    return nt.curves.synthesise(
+    return nt.curves.synthesize(
         contact, model, spring_constant=0.5, noise=30e-12, offset=1e-9, tilt=1e-4, points=POINTS, half_angle=0.4
     )
 

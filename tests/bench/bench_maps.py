@@ -29,7 +29,7 @@ def synthetic(side: int) -> maps.ArrayVolume:
     """Two moduli in a chequerboard."""
     y, x = np.mgrid[:side, :side] // 8
     modulus = np.where((x + y) % 2 == 0, 2e8, 1e9)
-    return maps.synthesise(
+    return maps.synthesize(
         modulus, 0.015, radius=RADIUS, spring_constant=STIFFNESS, noise=NOISE, points=1000, depth=20e-9, tilt=1e-4
     )
 

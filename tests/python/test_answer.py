@@ -29,7 +29,7 @@ def torn(model: str, modulus: float, stiffness: float, **changes: float) -> curv
     force = pull_off_force(model, made)  # type: ignore[arg-type]
     settings = {"noise": 0.01 * force, "depth": max(60e-9, 5 * force / stiffness),
                 "clearance": max(450e-9, 15 * force / stiffness)} | changes  # fmt: skip
-    return curves.synthesise(made, model, spring_constant=stiffness, **settings)  # type: ignore[arg-type]
+    return curves.synthesize(made, model, spring_constant=stiffness, **settings)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("model", ["jkr", "dmt", "maugis"])
@@ -150,9 +150,9 @@ def test_the_first_law_is_right_where_the_slope_does_not_tell(modulus: float) ->
 
 def test_the_first_law_without_adhesion_follows_the_tip() -> None:
     made = Contact(RADIUS, 1e6, 0.0)
-    curve = curves.synthesise(made, "hertz", spring_constant=0.05, noise=10e-12)
+    curve = curves.synthesize(made, "hertz", spring_constant=0.05, noise=10e-12)
     assert nt.fit.fit_curve(curve, "auto", radius=RADIUS).model == "hertz"
-    cone = curves.synthesise(made, "cone", spring_constant=0.05, noise=10e-12, half_angle=0.4)
+    cone = curves.synthesize(made, "cone", spring_constant=0.05, noise=10e-12, half_angle=0.4)
     assert nt.fit.fit_curve(cone, "auto", half_angle=0.4).model == "cone"
 
 

@@ -61,7 +61,7 @@ def stopped(line: list[str], there: Callable[[], bool], later: float = 0.0) -> s
 
 
 def ramps(count: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    sample = maps.synthesise(
+    sample = maps.synthesize(
         np.full((1, count), 1e8), np.array([[0.01]]), radius=20e-9, spring_constant=STIFFNESS, depth=20e-9,
         clearance=RAMP - 20e-9, points=600, noise=20e-12, model="dmt",
     )  # fmt: skip

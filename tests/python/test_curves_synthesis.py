@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""curves.synthesise: equilibrium and jumps as they must be, disturbances as asked; coverage of the fit's intervals."""
+"""curves.synthesize: equilibrium and jumps as they must be, disturbances as asked; coverage of the fit's intervals."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MODELS: list[Any] = ["hertz", "dmt", "jkr", "maugis"]
 
 
 def made(model: Any = "jkr", **given: Any) -> curves.ForceCurve:
-    return curves.synthesise(SOFT, model, spring_constant=STIFFNESS, **given)
+    return curves.synthesize(SOFT, model, spring_constant=STIFFNESS, **given)
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -53,7 +53,7 @@ def test_the_retraction_runs_through_its_lowest_force_to_where_the_spring_tears(
 
 def test_a_softer_spring_tears_earlier_on_the_branch() -> None:
     def last(stiffness: float) -> float:
-        curve = curves.synthesise(SOFT, "jkr", spring_constant=stiffness, points=20_000)
+        curve = curves.synthesize(SOFT, "jkr", spring_constant=stiffness, points=20_000)
         assert curve.retract is not None
         assert curve.retract.force is not None
         return float(curve.retract.force[np.flatnonzero(curve.retract.force)[-1]])

@@ -20,7 +20,7 @@ RADIUS, MODULUS, WORK, RANGE = 20e-9, 5e6, 0.05, 2e-9
 def curve_of(model: Any, seed: int = 1, **changes: Any) -> Any:
     contact = nt.Contact(RADIUS, MODULUS, 0.0 if model in ("hertz", "cone") else WORK, cohesive_range=RANGE)
     given: dict[str, Any] = {"spring_constant": 0.5, "noise": 20e-12, "offset": 1e-9, "tilt": 1e-4, "seed": seed}
-    return nt.curves.synthesise(contact, model, **(given | changes))
+    return nt.curves.synthesize(contact, model, **(given | changes))
 
 
 def choose(model: Any, **options: Any) -> nt.fit.Choice:

@@ -24,7 +24,7 @@ RADIUS, MODULUS, CONTACT, NOISE, ANGLE = 20e-9, 5e6, 3e-7, 20e-12, 0.4
 def curve_of(model: Any, **changes: Any) -> Any:
     contact = nt.Contact(RADIUS, MODULUS, 0.0)
     given: dict[str, Any] = {"spring_constant": 0.5, "noise": NOISE, "offset": 1e-9, "tilt": 1e-4}
-    return nt.curves.synthesise(contact, model, **({"seed": 0} | given | changes))
+    return nt.curves.synthesize(contact, model, **({"seed": 0} | given | changes))
 
 
 def hertz(indentation: Any, radius: float, effective_modulus: float) -> Any:

@@ -24,7 +24,7 @@ RADIUS, MODULUS, WORK, RANGE, STIFFNESS = 20e-9, 5e6, 0.05, 2e-9, 0.5
 
 def curve_of(model: Any, *, cohesive_range: float = RANGE, **changes: Any) -> Any:
     contact = nt.Contact(RADIUS, MODULUS, 0.0 if model == "hertz" else WORK, cohesive_range=cohesive_range)
-    return nt.curves.synthesise(contact, model, **({"spring_constant": STIFFNESS, "noise": 1e-12} | changes))
+    return nt.curves.synthesize(contact, model, **({"spring_constant": STIFFNESS, "noise": 1e-12} | changes))
 
 
 WHITE = [(model, "white") for model in bench_coverage.MODELS]
@@ -94,7 +94,7 @@ def test_calibration_sigma_equals_monte_carlo(model: str) -> None:
 
 def test_half_angle_enters_a_cone() -> None:
     """E* goes as 1/tan(psi): d ln E*/dpsi = -1/(sin cos)."""
-    curve = nt.curves.synthesise(
+    curve = nt.curves.synthesize(
         nt.Contact(RADIUS, MODULUS, 0.0), "cone", spring_constant=STIFFNESS, noise=1e-12, half_angle=0.4
     )
     told = Uncertainties(sensitivity=0.0, half_angle=0.02)
@@ -107,11 +107,11 @@ def test_sensitivity_is_a_datum_that_a_stiff_contact_overrules() -> None:
     """On a contact 40 times stiffer than the cantilever the curve knows its sensitivity to 0.1 %, on a soft one it does
     not: there it stays as uncertain as it was given."""
     stiff = nt.fit.fit_curve(
-        nt.curves.synthesise(nt.Contact(RADIUS, 77e9, WORK), "jkr", spring_constant=STIFFNESS, noise=10e-12), "jkr",
+        nt.curves.synthesize(nt.Contact(RADIUS, 77e9, WORK), "jkr", spring_constant=STIFFNESS, noise=10e-12), "jkr",
         radius=RADIUS,
     )  # fmt: skip
     soft = nt.fit.fit_curve(
-        nt.curves.synthesise(nt.Contact(RADIUS, 1e5, 0.0), "hertz", spring_constant=STIFFNESS, noise=10e-12), "hertz",
+        nt.curves.synthesize(nt.Contact(RADIUS, 1e5, 0.0), "hertz", spring_constant=STIFFNESS, noise=10e-12), "hertz",
         radius=RADIUS,
     )  # fmt: skip
     assert stiff.sigma["sensitivity"] < 0.003
@@ -195,7 +195,7 @@ def test_an_offset_between_the_branches_is_no_certain_adhesion(film: float) -> N
     It was all given to the adhesion, four sigma too much of it. Six seeds; two of twelve intervals of 95 % may miss."""
     contact, missed = nt.Contact(100e-9, 3e8, WORK), 0
     for seed in range(6):
-        curve = nt.curves.synthesise(contact, "jkr", spring_constant=1.0, noise=40e-12, seed=seed)
+        curve = nt.curves.synthesize(contact, "jkr", spring_constant=1.0, noise=40e-12, seed=seed)
         parts = []
         for part, sign in zip(curve.segments, (1.0, -1.0), strict=True):
             height = np.clip(part.z - part.z.min(), 5e-8, None)

@@ -171,7 +171,7 @@ def test_an_image_is_touched_with_its_own_relief(tmp_path: Path) -> None:
 def test_a_curve_becomes_the_scene() -> None:
     pytest.importorskip("nanotouch._fit")
     contact = nt.Contact(radius=2e-6, effective_modulus=20e6, work_of_adhesion=0.03, cohesive_stress=5e6)
-    curve = curves.synthesise(contact, spring_constant=1.0, noise=0.2e-9, depth=600e-9, clearance=1.5e-6)
+    curve = curves.synthesize(contact, spring_constant=1.0, noise=0.2e-9, depth=600e-9, clearance=1.5e-6)
     subject = files.of_fit(curve, "curve", 2e-6)
     plan = subject.scene.plan()
     assert plan.pull_off_force == pytest.approx(nt.contact.pull_off_force("maugis", contact), rel=0.05)
@@ -192,7 +192,7 @@ def test_what_a_curve_does_not_tell_is_assumed_and_said() -> None:
     """A hard sample under a soft lever: the pull-off that is touched is the measured one."""
     pytest.importorskip("nanotouch._fit")
     contact = nt.Contact(radius=20e-9, effective_modulus=77e9, work_of_adhesion=0.1, cohesive_range=0.2e-9)
-    curve = curves.synthesise(contact, spring_constant=0.05, noise=0.2e-9, depth=300e-9, clearance=900e-9)
+    curve = curves.synthesize(contact, spring_constant=0.05, noise=0.2e-9, depth=300e-9, clearance=900e-9)
     subject = files.of_fit(curve, "curve", 20e-9)
     measured = curves.analyse(curve).pull_off_force
     assert measured == pytest.approx(nt.contact.pull_off_force("maugis", contact), rel=0.05)
@@ -206,7 +206,7 @@ def test_a_curve_is_felt_by_the_law_that_fit_takes() -> None:
     """It was Maugis-Dugdale's on the retraction always: 59.1 kPa where ``nanotouch fit`` said 64.9."""
     pytest.importorskip("nanotouch._fit")
     contact = nt.Contact(radius=1e-6, effective_modulus=5e3, work_of_adhesion=0.0)
-    curve = curves.synthesise(contact, "hertz", spring_constant=0.05, noise=10e-12, depth=600e-9, clearance=1.5e-6)
+    curve = curves.synthesize(contact, "hertz", spring_constant=0.05, noise=10e-12, depth=600e-9, clearance=1.5e-6)
     subject, fitted = files.of_fit(curve, "curve", 1e-6), nt.fit.fit_curve(curve, "auto", radius=1e-6)
     assert fitted.model == "hertz"
     known = subject.scene.plan().explain()
@@ -320,7 +320,7 @@ def test_a_map_is_touched_with_the_modulus_of_each_place(tmp_path: Path) -> None
         pytest.importorskip(module)
     x = np.mgrid[:8, :8][1] / 8
     modulus = np.where(x < 0.5, 2e8, 1e9)
-    sample = nt.maps.synthesise(
+    sample = nt.maps.synthesize(
         modulus, np.full_like(x, 0.02), np.zeros_like(x), radius=20e-9, spring_constant=1.0, points=300, depth=20e-9
     )
     file = tmp_path / "map.nc"

@@ -29,7 +29,7 @@ KNOWN = ["--model", "dmt", "--radius", "20nm", "--spring-constant", "0.5N/m"]
 @pytest.fixture
 def volume_file(tmp_path: Path) -> Path:
     """2 x 2 curves of one contact, more adhesive in the second row; both directions as stored, deepest first."""
-    sample = maps.synthesise(
+    sample = maps.synthesize(
         np.full((2, 2), 1e8), np.array([[0.01], [0.02]]), radius=20e-9, spring_constant=STIFFNESS, depth=20e-9,
         clearance=RAMP - 20e-9, points=600, noise=20e-12, model="dmt",
     )  # fmt: skip

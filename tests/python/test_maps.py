@@ -33,7 +33,7 @@ def pattern(n: int = 8) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def volume(n: int = 8, points: int = 500, **given: Any) -> maps.ArrayVolume:
     known: dict[str, Any] = {"radius": 20e-9, "spring_constant": 1.0, "noise": 30e-12, "depth": 20e-9, "tilt": 1e-4}
-    return maps.synthesise(*pattern(n), points=points, **(known | given))
+    return maps.synthesize(*pattern(n), points=points, **(known | given))
 
 
 def curve_of(source: maps.ArrayVolume, y: int, x: int) -> nt.ForceCurve:
@@ -284,7 +284,7 @@ def test_measured_maps(name: str, shape: tuple[int, int]) -> None:
 def test_bounds_where_a_stiff_contact_does_not_determine_the_modulus() -> None:
     """77 GPa on 0.5 N/m: the bound of the map lies below the truth, and below that of one fit, which knows more (the
     profile of chi^2 over the whole curve, where this is the slope alone)."""
-    source = maps.synthesise(
+    source = maps.synthesize(
         np.full((2, 3), 77e9), 0.03, radius=20e-9, spring_constant=0.5, noise=30e-12, depth=60e-9, points=800
     )
     data = maps.fit(source, "dmt", radius=20e-9)
@@ -324,7 +324,7 @@ def test_bounds_where_a_soft_contact_hides_in_the_noise(modulus: float) -> None:
     assert bounded.sum() > 20
     assert np.mean(most[bounded] >= modulus) > 0.9
     assert data["effective_modulus_most"].attrs["units"] == "Pa"
-    stiff = maps.synthesise(np.full((1, 2), 77e9), 0.03, radius=20e-9, spring_constant=0.5, noise=30e-12, points=800)
+    stiff = maps.synthesize(np.full((1, 2), 77e9), 0.03, radius=20e-9, spring_constant=0.5, noise=30e-12, points=800)
     assert np.isnan(maps.fit(stiff, "dmt", radius=20e-9)["effective_modulus_most"].values).all()
 
 
@@ -341,7 +341,7 @@ def test_a_map_holds_the_interval_of_the_pull_off() -> None:
 
 def test_the_radius_that_a_file_states_is_used() -> None:
     """As for one curve; several that differ are refused, and one that is given goes before."""
-    curve = nt.curves.synthesise(nt.Contact(3e-6, 5e4), "hertz", spring_constant=0.1, noise=10e-12, depth=3e-7, seed=1)
+    curve = nt.curves.synthesize(nt.Contact(3e-6, 5e4), "hertz", spring_constant=0.1, noise=10e-12, depth=3e-7, seed=1)
     stated = replace(curve, meta=dict(curve.meta) | {"tip radius": 3e-6})
     data = nt.maps.fit([stated, stated], "hertz")
     assert float(data.effective_modulus[0, 0]) == nt.fit.fit_curve(stated, "hertz").values["effective_modulus"]

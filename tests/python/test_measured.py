@@ -41,7 +41,7 @@ def a_group(folder: Path, modulus: float, seed: int) -> None:
     for number in range(CURVES):
         contact = Contact(1e-6, float(modulus * np.exp(np.log(1.3) * rng.standard_normal())), 0.0)
         made.append(
-            nt.curves.synthesise(
+            nt.curves.synthesize(
                 contact, "hertz", spring_constant=0.05, depth=0.6e-6, clearance=1.5e-6, points=300, noise=10e-12,
                 seed=seed + number,
             )

@@ -22,7 +22,7 @@ def folder(tmp_path: Path) -> Path:
     made.mkdir()
     for seed in range(3):
         contact = Contact(1e-6, 5e4, 0.0)
-        curve = curves.synthesise(contact, "hertz", spring_constant=0.1, noise=10e-12, points=400, seed=seed)
+        curve = curves.synthesize(contact, "hertz", spring_constant=0.1, noise=10e-12, points=400, seed=seed)
         curves.write(made / f"{seed}.h5", [curve])
     return made
 

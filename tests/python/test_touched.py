@@ -32,7 +32,7 @@ def test_a_fitted_curve_is_felt_as_it_was_fitted(model: str) -> None:
     """The scene's exact law at the fitted indentations, over max(|force|, pull-off)."""
     contact, spring = CONTACTS[model]
     given: dict[str, Any] = {"half_angle": 0.35} if model in ("cone", "pyramid") else {}
-    curve = nt.curves.synthesise(contact, model, spring_constant=spring, depth=20e-9, **given)
+    curve = nt.curves.synthesize(contact, model, spring_constant=spring, depth=20e-9, **given)
     given |= {"cohesive_range": 0.3e-9} if model == "maugis" else {}
     result = nt.fit.fit_curve(curve, model, radius=contact.radius, **given)
     scene = result.to_scene()
@@ -60,7 +60,7 @@ def test_a_measured_curve_is_touched() -> None:
 
 def test_what_is_not_determined_is_no_scene() -> None:
     contact, spring = CONTACTS["maugis"]
-    result = nt.fit.fit_curve(nt.curves.synthesise(contact, spring_constant=spring, depth=20e-9), radius=20e-9)
+    result = nt.fit.fit_curve(nt.curves.synthesize(contact, spring_constant=spring, depth=20e-9), radius=20e-9)
     unknown = dataclasses.replace(result, identifiable={**result.identifiable, "effective_modulus": False})
     with pytest.raises(InvalidValue, match="does not determine effective_modulus: no scene"):
         unknown.to_scene()
@@ -78,7 +78,7 @@ def volume(n: int = 12) -> maps.ArrayVolume:
     """Soft on the left, hard on the right; sticky in the upper half; a slope."""
     y, x = np.mgrid[:n, :n] / n
     modulus, work = np.where(x < 0.5, SOFT, HARD), np.where(y < 0.5, WEAK, STRONG)
-    return maps.synthesise(
+    return maps.synthesize(
         modulus, work, 3e-9 * x, radius=20e-9, spring_constant=1.0, noise=10e-12, depth=20e-9, points=400
     )
 

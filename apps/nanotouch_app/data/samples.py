@@ -94,7 +94,7 @@ def _cut(path: Path) -> None:
 
 def _curve(seed: int) -> nt.curves.ForceCurve:
     contact = nt.Contact(RADIUS, MODULUS, WORK, cohesive_range=0.2e-9)
-    made = nt.curves.synthesise(contact, spring_constant=SPRING, noise=50e-12, depth=DEPTH, seed=seed)
+    made = nt.curves.synthesize(contact, spring_constant=SPRING, noise=50e-12, depth=DEPTH, seed=seed)
     return replace(made, meta={**made.meta, "sensitivity": SENSITIVITY})
 
 
@@ -120,7 +120,7 @@ def _map() -> list[nt.curves.ForceCurve]:
         ("shape", ROWS), ("size", ROWS * PIXEL), ("center", 0.0))}  # fmt: skip
     return [
         replace(
-            nt.curves.synthesise(
+            nt.curves.synthesize(
                 nt.Contact(RADIUS, float(stiff[x]), WORK, cohesive_range=0.2e-9), spring_constant=SPRING, noise=50e-12,
                 depth=DEPTH, clearance=240e-9, points=600, seed=1 + ROWS * y + x,
             ),

@@ -2,9 +2,12 @@
 // contact.h, material.h
 #include <cmath>
 #include <limits>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "contact_table.h"
+#include "nanotouch/advanced/contact_equilibrium.h"
 
 // A law made ready for one branch, and its table where the tier asks for one.
 struct PreparedLaw {
@@ -64,8 +67,60 @@ static double indentation_at(const PreparedLaw &self, double force)
     return delta; // untouched, so NaN, on failure
 }
 
+// What the curves of a batch have in common.
+struct Batch {
+    nt_model model;
+    nt_branch branch;
+    py::ssize_t first; // its number among all curves
+    long points;
+};
+
+static nt_status one_ramp(const Batch &batch, const nt_contact &contact, double spring, const double *stage,
+                          double *force)
+{
+    nt_contact_law law;
+    const nt_status status = nt_contact_law_init(&law, batch.model, &contact);
+    if (status != NT_OK)
+        return status;
+    const nt_ramp ramp = {spring, batch.branch, stage, force, batch.points};
+    return nt_contact_law_ramp(&law, &ramp);
+}
+
+// Forces, shape (n, points), at stage indentations of that shape; of each curve a contact {R, E*, w, sigma0} and k_c.
+static Array ramps(const std::tuple<int, int, py::ssize_t> &which, const Array &contacts, const Array &springs,
+                   const Array &stage)
+{
+    if (contacts.ndim() != 2 || contacts.shape(1) != 4 || springs.ndim() != 1 || stage.ndim() != 2 ||
+        contacts.shape(0) != stage.shape(0) || springs.shape(0) != stage.shape(0))
+        throw py::value_error("ramps: contacts (n, 4), springs (n,) and stage (n, points) are expected");
+    const Batch batch = {static_cast<nt_model>(std::get<0>(which)), static_cast<nt_branch>(std::get<1>(which)),
+                         std::get<2>(which), static_cast<long>(stage.shape(1))};
+    const py::ssize_t count = stage.shape(0);
+    Array out({count, stage.shape(1)});
+    const double *row = contacts.data(), *spring = springs.data(), *in = stage.data();
+    double *force = out.mutable_data();
+    nt_status status = NT_OK;
+    py::ssize_t i = 0;
+    {
+        py::gil_scoped_release release;
+        for (; i < count && status == NT_OK; ++i)
+            status = one_ramp(batch, {row[4 * i], row[4 * i + 1], row[4 * i + 2], row[4 * i + 3]}, spring[i],
+                              in + i * batch.points, force + i * batch.points);
+    }
+    if (status != NT_OK) {
+        const double *at = row + 4 * (i - 1);
+        const nt_contact contact = {at[0], at[1], at[2], at[3]};
+        nt_problem problem{};
+        const std::string what = "curve " + std::to_string(batch.first + i - 1);
+        raise_on(nt_contact_check(&contact, &problem), problem, what);
+        raise_on(status, what);
+    }
+    return out;
+}
+
 void bind_contact(py::module_ &module)
 {
+    module.def("ramps", &ramps);
     py::class_<PreparedLaw>(module, "ContactLaw")
         .def(py::init([](int model, double radius, double modulus, double adhesion, double stress, int branch,
                          int tier) { return PreparedLaw(model, {radius, modulus, adhesion, stress}, branch, tier); }),

@@ -11,7 +11,7 @@ import nanotouch as nt
 import numpy as np
 
 contact = nt.Contact(1e-6, 1e6, 0.02)
-curve = nt.curves.synthesise(contact, "jkr", spring_constant=0.5, depth=40e-9, noise=30e-12)
+curve = nt.curves.synthesize(contact, "jkr", spring_constant=0.5, depth=40e-9, noise=30e-12)
 choice = nt.fit.choose_model(curve, radius=1e-6)
 print(choice)
 figure, axes = plt.subplots()

@@ -10,6 +10,6 @@ import nanotouch as nt
 import numpy as np
 
 stiff = np.broadcast_to(np.where(np.arange(12) < 6, 3e9, 6e9), (12, 12))
-volume = nt.maps.synthesise(stiff, 0.05, radius=20e-9, spring_constant=2.0, noise=50e-12, points=400, depth=20e-9)
+volume = nt.maps.synthesize(stiff, 0.05, radius=20e-9, spring_constant=2.0, noise=50e-12, points=400, depth=20e-9)
 data = nt.maps.fit(volume, "maugis", radius=20e-9, threads=1)
 figure = nt.maps.draw(data)

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import nanotouch as nt
 
 truth = nt.Contact(20e-9, effective_modulus=3e9, work_of_adhesion=0.05, cohesive_range=0.2e-9)
-curve = nt.curves.synthesise(truth, spring_constant=2.0, depth=20e-9, noise=50e-12, seed=1)
+curve = nt.curves.synthesize(truth, spring_constant=2.0, depth=20e-9, noise=50e-12, seed=1)
 
 # %%
 # One fit. Each value has an uncertainty.

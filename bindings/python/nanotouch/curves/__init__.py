@@ -19,12 +19,13 @@ if TYPE_CHECKING:
     from .adhesion import Adhesion, adhesion_of
     from .analysis import analyse, force_gap, sensitivity
     from .baseline import Baseline, Bend, Wave
+    from .batch import CurveBatch, synthesize_batch
     from .calibration import Calibration, CalibrationTable, parse_sensitivity
     from .chain import Chain, chains
     from .events import Rupture
     from .report import CurveReport
     from .snap import Lever, Recalibrated, recalibrate, write_table
-    from .synthesis import synthesise
+    from .synthesis import synthesize
     from .thermal import ThermalTune, thermal_tune
     from .thermal_file import ThermalSpectrum, thermal_spectrum
     from .writing import write
@@ -35,12 +36,13 @@ __getattr__, __dir__ = at_first_use(
         "adhesion": "Adhesion adhesion_of",
         "analysis": "analyse force_gap sensitivity",
         "baseline": "Baseline Bend Wave",
+        "batch": "CurveBatch synthesize_batch",
         "calibration": "Calibration CalibrationTable parse_sensitivity",
         "chain": "Chain chains",
         "events": "Rupture",
         "report": "CurveReport",
         "snap": "Lever Recalibrated recalibrate write_table",
-        "synthesis": "synthesise",
+        "synthesis": "synthesize",
         "thermal": "ThermalTune thermal_tune",
         "thermal_file": "ThermalSpectrum thermal_spectrum",
         "writing": "write",
@@ -54,6 +56,7 @@ __all__ = [
     "Calibration",
     "CalibrationTable",
     "Chain",
+    "CurveBatch",
     "CurveReport",
     "ForceCurve",
     "Lever",
@@ -75,7 +78,8 @@ __all__ = [
     "sader",
     "sensitivity",
     "stream",
-    "synthesise",
+    "synthesize",
+    "synthesize_batch",
     "thermal_spectrum",
     "thermal_tune",
     "write",

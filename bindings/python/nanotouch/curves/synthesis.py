@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from .. import contact as laws
 from .._arrays import check_between
 from ..contact import geometry
@@ -16,11 +17,10 @@ from .curve import ForceCurve, Segment
 
 CurveModel = Literal["maugis", "jkr", "dmt", "hertz", "cone", "pyramid"]
 
-_TABLE = 20_001  # points of the law between which it is taken as straight: below 1e-8 of the force
-_FOLD = 1e-12  # of the depth, by which the table starts inside the displacement fold
+_TABLE = 20_001  # points of a cone's law between which it is taken as straight: below 1e-8 of the force
 
 
-def synthesise(
+def synthesize(
     contact: laws.Contact,
     model: CurveModel = "maugis",
     *,
@@ -41,9 +41,10 @@ def synthesise(
 ) -> ForceCurve:
     """What an instrument would record over a known contact.
 
-    The base moves evenly, slowly enough for equilibrium. On the approach the tip is free until the undeformed bodies
-    would touch, and then on the stable branch of the law. On the retraction it follows that branch through its lowest
-    force, until the cantilever tears it off: where dF/d(delta) = -k_c, or at the law's own fold.
+    The base moves evenly, slowly enough for equilibrium. On the approach the tip is free until the law's attraction
+    begins (a gap of h0 for ``"maugis"``, first touch for the others), and then on the stable branch. On the retraction
+    it follows that branch through its lowest force, until the cantilever pulls it off: where dF/d(delta) = -k_c, or at
+    the law's own fold. Forces are within 1e-9 of the largest one of that equilibrium.
 
     Parameters
     ----------
@@ -90,15 +91,18 @@ def synthesise(
     stated = spring_constant * spring_constant_error
     if model == "cone" or model == "pyramid":
         height, force_there = _equilibria_of_cone(contact, model, half_angle, spring_constant, depth)
-    else:
-        height, force_there = _equilibria(contact, model, spring_constant, depth)
+
+    def force_at(role: Literal["approach", "retract"], stage: NDArray[np.float64]) -> NDArray[np.float64]:
+        if model == "cone" or model == "pyramid":
+            return np.where(stage > 0.0, np.interp(-stage, height, force_there), 0.0)
+        numbers, spring = np.array([contact._numbers(model)]), np.array([spring_constant])
+        branch = laws.branch_index("approach" if role == "approach" else "stable")
+        return _core.ramps((laws.MODELS.index(model), branch, 0), numbers, spring, stage[None])[0]
 
     def branch(role: Literal["approach", "retract"], z: NDArray[np.float64], first: int) -> Segment:
         time = (first + np.arange(points)) / rate
-        above = z - contact_point + drift * (time - (points - 1) / rate)
-        held = above <= (0.0 if role == "approach" else height[-1])
-        force = np.where(held, np.interp(above, height, force_there), 0.0)
-        shown = force + offset + tilt * (z - contact_point) + noise * rng.standard_normal(points)
+        stage = contact_point - z - drift * (time - (points - 1) / rate)
+        shown = force_at(role, stage) + offset + tilt * (z - contact_point) + noise * rng.standard_normal(points)
         deflection = shown / spring_constant * sensitivity_error
         return Segment(role, time, z, "height (measured)", stated * deflection, deflection)
 
@@ -106,19 +110,6 @@ def synthesise(
     truth = {"contact": contact, "model": model, "contact_point": contact_point, "spring_constant": spring_constant}
     meta = {"spring constant": stated, "rate": rate, "truth": truth}
     return ForceCurve((branch("approach", z[::-1], 0), branch("retract", z, points)), meta, f"synthetic {model} {seed}")
-
-
-def _equilibria(
-    contact: laws.Contact, model: laws.Model, stiffness: float, depth: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Height of the base over first touch [m], growing up to where the tip is torn off, and the force there [N]."""
-    grip = contact.law(model).grip_indentation
-    reach = 1.2 * (depth + laws.pull_off_force(model, contact) / stiffness) - grip
-    delta = grip + (_FOLD + np.linspace(0.0, 1.0, _TABLE) ** 2) * reach  # dense where the law bends
-    force = np.asarray(laws.evaluate(model, delta, contact).F)
-    height = -delta - force / stiffness
-    torn = int(np.argmax(height))
-    return height[torn:][::-1], force[torn:][::-1]
 
 
 def _equilibria_of_cone(

@@ -15,11 +15,11 @@ from .dataset import determined, flag_counts, read, write
 from .fields import planes
 from .picture import draw
 from .run import fit
-from .synthesis import synthesise
+from .synthesis import synthesize
 from .touched import to_scene, to_surface
 from .volume import ArrayVolume, CurveVolume
 
 __all__ = [
-    "ArrayVolume", "CurveVolume", "determined", "draw", "fit", "flag_counts", "planes", "read", "synthesise",
+    "ArrayVolume", "CurveVolume", "determined", "draw", "fit", "flag_counts", "planes", "read", "synthesize",
     "to_scene", "to_surface", "write",
 ]  # fmt: skip

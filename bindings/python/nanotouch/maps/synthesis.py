@@ -16,7 +16,7 @@ from .volume import ArrayVolume
 _DEPTH, _CLEARANCE, _CONTACT_POINT = 60e-9, 240e-9, 300e-9  # m; of a curve at height 0
 
 
-def synthesise(
+def synthesize(
     effective_modulus: ArrayLike,
     work_of_adhesion: ArrayLike = 0.0,
     height: ArrayLike = 0.0,
@@ -43,7 +43,7 @@ def synthesise(
     pixel : float
         Distance of neighbours [m].
     **of_curve
-        As for :func:`nanotouch.curves.synthesise`: ``points`` of each branch, ``depth``, ``clearance``, ``tilt``, ...
+        As for :func:`nanotouch.curves.synthesize`: ``points`` of each branch, ``depth``, ``clearance``, ``tilt``, ...
     """
     maps = np.broadcast_arrays(effective_modulus, work_of_adhesion, height)
     if maps[0].ndim != 2:
@@ -54,7 +54,7 @@ def synthesise(
     made = []
     for modulus, work, lift in kinds:
         contact = laws.Contact(radius, modulus, work, cohesive_range=cohesive_range if work > 0.0 else None)
-        curve = curves.synthesise(
+        curve = curves.synthesize(
             contact, model if work > 0.0 else "hertz", spring_constant=spring_constant, depth=depth + lift,
             clearance=clearance - lift, contact_point=_CONTACT_POINT + lift, **of_curve
         )  # fmt: skip
