@@ -97,7 +97,8 @@ def synthesize(
             return np.where(stage > 0.0, np.interp(-stage, height, force_there), 0.0)
         numbers, spring = np.array([contact._numbers(model)]), np.array([spring_constant])
         branch = laws.branch_index("approach" if role == "approach" else "stable")
-        return _core.ramps((laws.MODELS.index(model), branch, 0), numbers, spring, stage[None])[0]
+        force: NDArray[np.float64] = _core.ramps((laws.MODELS.index(model), branch, 0), numbers, spring, stage[None])[0]
+        return force
 
     def branch(role: Literal["approach", "retract"], z: NDArray[np.float64], first: int) -> Segment:
         time = (first + np.arange(points)) / rate

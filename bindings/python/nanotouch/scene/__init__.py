@@ -275,6 +275,36 @@ class Scene(SceneFields, core_type=_core.Scene):
         )
         return Plan.make(self, demand, rig, surface)
 
+    def plans(self, over: Mapping[str, Sequence[Any]], demand: Demand | None = None, *, rig: Rig | None = None) -> Any:
+        """Plans for every combination of values of fields, in one labeled array per result.
+
+        Parameters
+        ----------
+        over : mapping
+            Names of fields (``"tip.radius"``) with their values, SI or the name of a choice. Each is a dimension.
+        demand : Demand, optional
+            As for :meth:`plan`.
+        rig : Rig, optional
+            As for :meth:`plan`.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``pull_off_force`` [N], ``maugis_lambda``, ``minimum_spring`` [N/m], ``maximum_stiffness`` [N/m], ``bound``,
+            ``scale``, ``fold_shift_m`` [m], ``cost``, ``latency``, ``contact_law``; where there is no plan they are NaN
+            and ``refused`` has the reason.
+
+        Raises
+        ------
+        InvalidValue
+            For a name that is no field, and for what is no sequence.
+        MissingExtra
+            Without xarray.
+        """
+        from nanotouch.scene.plans import plans_over  # the next layer, as in plan()
+
+        return plans_over(self, over, demand, rig)
+
 
 class Demand(DemandFields, core_type=_core.Demand):
     """How true the felt force must be and what it may cost; by default 1 % of the force."""
