@@ -215,7 +215,7 @@ static void add_head(nt_text *text, const nt_trainer *trainer)
         const nt_measure *of = &trainer->measures[i];
         nt_text_fill(text, of->unit[0] ? "\n# {name} [{unit}]: " : "\n# {name}: ",
                      (const nt_figure[]){{"name", 0.0, NULL, of->name}, {"unit", 0.0, NULL, of->unit}, {0}});
-        nt_text_general(text, of->value, 9);
+        nt_text_general(text, of->value, 17);
     }
     nt_text_add(text, trainer->trial_count
                           ? "\npair,ratio of moduli,stiffer,answer,right\n"
@@ -226,7 +226,7 @@ static void add_trace(nt_text *text, const nt_trace_row *row)
 {
     const double values[] = {row->time, row->x, row->y, row->gap, row->low, row->high, row->touches};
     for (size_t i = 0; i < sizeof values / sizeof *values; ++i) {
-        nt_text_general(text, values[i], 9);
+        nt_text_general(text, values[i], 17);
         nt_text_add(text, i + 1 < sizeof values / sizeof *values ? "," : "\n");
     }
 }
@@ -235,7 +235,7 @@ static void add_trial(nt_text *text, const nt_trial *trial, long number)
 {
     nt_text_general(text, (double)number, 9);
     nt_text_add(text, ",");
-    nt_text_general(text, trial->ratio, 6);
+    nt_text_general(text, trial->ratio, 17);
     const char letters[] = {
         ',', trial->stiffer, ',', trial->answer, ',', trial->stiffer == trial->answer ? '1' : '0', '\n', '\0'};
     nt_text_add(text, letters);

@@ -142,18 +142,19 @@ def test_methods_are_weighed_and_their_scatter_counts() -> None:
 def test_what_is_found_is_written_and_the_rest_stays(tmp_path: Path) -> None:
     path = tmp_path / "rig.toml"
     shutil.copy(FILE, path)
-    values = {"stage.gain": Value(0.98, 0.001, ""), "probe.sensitivity": Value(35e-9, 0.7e-9, "m/V"),
+    sensitivity = 35.1234567890123e-9
+    values = {"stage.gain": Value(0.98, 0.001, ""), "probe.sensitivity": Value(sensitivity, 0.02 * sensitivity, "m/V"),
               "stage.resonance": Value(451.0, 0.2, "Hz"), "probe.spring_constant": Value(7.5, 0.3, "N/m")}  # fmt: skip
     command.write(path, values, rig_file.read(path))
     text, found = path.read_text(), rig_file.read(path)
     assert found.slave is not None
     assert found.slave.setup["driven"][2]["gain"] == pytest.approx(0.98e-6)
     assert found.slave.setup["driven"][2]["uncertainty"] == pytest.approx(math.hypot(0.001 / 0.98, 0.005))
-    assert found.slave.setup["felt"][2]["gain"] == pytest.approx(35e-9)
+    assert found.slave.setup["felt"][2]["gain"] == pytest.approx(sensitivity, rel=3e-16)  # to the last digit
     rig = nt.Rig.from_tables(found.rig)
     assert rig.stage.resonance == 451.0
     assert (rig.probe.spring_constant, rig.probe.spring_constant_sigma) == pytest.approx((7.5, 0.04))
-    assert (rig.probe.sensitivity, rig.probe.sensitivity_sigma) == pytest.approx((35e-9, 0.02))
+    assert (rig.probe.sensitivity, rig.probe.sensitivity_sigma) == pytest.approx((sensitivity, 0.02))
     assert "# +- 0.2 Hz, 20" in text
     assert [line for line in text.splitlines() if line.startswith("#")] == [
         line for line in FILE.read_text().splitlines() if line.startswith("#")

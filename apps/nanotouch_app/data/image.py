@@ -259,7 +259,7 @@ def _without_tip(
         size = min(31, (min(image.shape) // 2 - 1) | 1)
         estimate = images.estimate_tip(image, size)
         shape = estimate.heights
-        np.savetxt(out / "tip.csv", shape, delimiter=",", fmt="%.6e", header="height above the apex [m]")
+        np.savetxt(out / "tip.csv", shape, delimiter=",", fmt="%s", header="height above the apex [m]")
         height = 0.25 * float(shape.max())
         flat = not (shape > 0).any()
         radius = float("inf") if flat else estimate.radius(max(height, float(shape[shape > 0].min())))

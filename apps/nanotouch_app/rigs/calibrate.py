@@ -23,7 +23,7 @@ from nanotouch import rig_file
 from nanotouch.errors import InvalidValue
 from nanotouch.touch import calibrate
 from nanotouch.touch.calibrate import Value
-from nanotouch.units import in_words, key_spellings
+from nanotouch.units import from_si, in_words, key_spellings
 
 from nanotouch_app.common.quantity import parse_quantity
 
@@ -258,8 +258,8 @@ def put(text: str, table: str, name: str, unit: str, value: float, comment: str 
         found = re.match(r"\s*([A-Za-z_0-9]+)\s*=\s*[^#]*?(\s*#.*)?$", lines[n])
         if found and found[1] in keys:
             note = f"  # {comment}" if comment else found[2] or ""
-            lines[n] = f"{found[1]} = {value / keys[found[1]]:.8g}{note}"
+            lines[n] = f"{found[1]} = {from_si(value, keys[found[1]])!r}{note}"
             return "\n".join(lines) + "\n"
     key = next(key for key, factor in keys.items() if factor == 1.0)
-    lines.insert(at + 1, f"{key} = {value:.8g}" + (f"  # {comment}" if comment else ""))
+    lines.insert(at + 1, f"{key} = {float(value)!r}" + (f"  # {comment}" if comment else ""))
     return "\n".join(lines) + "\n"

@@ -45,8 +45,9 @@ function valueOf(row, section, key, value, units) {
     if (row.choices.includes(word)) return word;
     throw new Error(`[${section}] ${key}: valid are ${row.choices.join(", ")}`);
   }
-  const number = (typeof value === "number" || typeof value === "bigint" ? Number(value) : NaN) * spellings(row, units)[key];
-  const si = Number(number.toPrecision(15));
+  const number = typeof value === "number" || typeof value === "bigint" ? Number(value) : NaN;
+  const factor = spellings(row, units)[key];
+  const si = factor === 1 ? number : Number((number * factor).toPrecision(15)); // 3 nm are 3e-9 m
   if (!(si >= row.minimum && si <= row.maximum))
     throw new Error(`[${section}] ${key} = ${String(value).slice(0, 40)} (${row.doc}): valid is ${row.minimum} .. ${row.maximum} ${row.unit}`);
   return si;

@@ -71,8 +71,11 @@ def to_si(value: float, factor: float) -> float:
 
 
 def from_si(value: float, factor: float) -> float:
-    """``value`` over ``factor``, the inverse of :func:`to_si`."""
-    return float(Decimal(repr(value)) / Decimal(repr(factor)))
+    """``value`` over ``factor``: what :func:`to_si` turns into ``value`` again, or into the double beside it where
+    no number does."""
+    near = float(Decimal(repr(float(value))) / Decimal(repr(factor)))
+    around = (near, math.nextafter(near, -math.inf), math.nextafter(near, math.inf))
+    return next((number for number in around if to_si(number, factor) == value), near)
 
 
 def parse_quantity(text: str, unit: str) -> float:

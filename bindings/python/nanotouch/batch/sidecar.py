@@ -32,6 +32,7 @@ from .._io.files import toml_tables as toml_tables
 from .._io.words import told
 from .._io.writing import replacing
 from ..errors import ReadError
+from ..units import from_si, to_si
 
 _NM = 1e-9
 _SHOWN = 8  # digits of a hash in a message
@@ -76,9 +77,9 @@ class Sidecar:
             if decision.exclude:
                 lines.append(f"exclude = {json.dumps(decision.exclude)}")
             if decision.contact_point is not None:
-                lines.append(f"contact_point_nm = {decision.contact_point / _NM:.12g}")
+                lines.append(f"contact_point_nm = {from_si(decision.contact_point, _NM)!r}")
             if decision.baseline is not None:
-                low, high = (f"{end / _NM:.12g}" for end in decision.baseline)
+                low, high = (repr(from_si(end, _NM)) for end in decision.baseline)
                 lines.append(f"baseline_nm = [{low}, {high}]")
             if decision.sha256 and len(lines) > 1:
                 lines.append(f"sha256 = {json.dumps(decision.sha256)}")
@@ -136,8 +137,8 @@ def _decision(where: str, table: Any) -> Decision:
     if not isinstance(sha256, str) or ("sha256" in table and not re.fullmatch("[0-9a-f]{64}", sha256)):
         raise ReadError(f"{where}: sha256 is {told(sha256)}, expected 64 hexadecimal digits")
     place, baseline = (
-        None if contact is None else contact * _NM,
-        None if ends is None else (ends[0] * _NM, ends[1] * _NM),
+        None if contact is None else to_si(contact, _NM),
+        None if ends is None else (to_si(ends[0], _NM), to_si(ends[1], _NM)),
     )
     return Decision(exclude, place, baseline, sha256)
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import csv
 import warnings
 from dataclasses import dataclass, fields, replace
 from os import PathLike
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from .._arrays import Floats
 from .._io.words import counted
+from .._io.writing import write_csv
 from ..errors import InvalidValue, require
 from ._robust import MAD, pixel_noise
 from .parting import parted
@@ -100,12 +100,8 @@ class GrainTable:
 
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write the table, one line per particle, SI."""
-        columns = self.columns()
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(["number", *columns])
-            for number, row in enumerate(zip(*columns.values(), strict=True), 1):
-                writer.writerow([number, *(f"{v:.6g}" if isinstance(v, np.floating) else int(v) for v in row)])
+        columns = self.columns() | {"border": self.border.astype(int)}
+        write_csv(path, {"number": np.arange(1, len(self) + 1), **columns}, {})
 
     def __str__(self) -> str:
         what, beyond = ("pit", "deeper than") if self.pits else ("particle", "above")
