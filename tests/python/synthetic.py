@@ -8,6 +8,7 @@ them, from the published description of the format, not through the readers unde
 from __future__ import annotations
 
 import json
+import os
 import struct
 import zipfile
 from dataclasses import dataclass
@@ -17,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-DATA = Path(__file__).resolve().parents[2].parent / "shared" / "data"  # real files, beside the checkout where present
+#: real files, beside the checkout where present
+DATA = Path(os.environ.get("NANOTOUCH_DATA", Path(__file__).resolve().parents[2].parent / "shared" / "data"))
 
 
 def asymmetric(ny: int = 24, nx: int = 32) -> Array:

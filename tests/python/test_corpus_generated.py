@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 pytest.importorskip("SurfaceTopography")
 pytest.importorskip("afmformats")
@@ -159,6 +160,23 @@ def _trigger(file: Path) -> float:
     return float(force.max() - np.median(force[: len(force) // 4]))
 
 
+def _force(file: Path, **given: float) -> NDArray[np.float64]:
+    segments = nt.curves.read(file, **given)[0].segments  # type: ignore[arg-type]
+    return np.concatenate([segment.force for segment in segments if segment.force is not None])
+
+
+def _nova(file: Path) -> NDArray[np.float64]:
+    """Forces, at a calibration that the file does not state."""
+    return _force(file, spring_constant=0.055, sensitivity=61.0)
+
+
+def _unitless(file: Path) -> NDArray[np.float64]:
+    """Heights of the pattern that Gwyddion made, which has no unit."""
+    return nt.images.read(file, "Test", pixel_size=1e-9, z_unit="um").heights
+
+
+NOVA = "fmt-ntmdt-txt-fd_2015_01_17_gel4-0,1_mQ_adh_6B_Curve_DFL_Height_51.txt"
+
 #: What the maker's software wrote beside the data, and how near the data have to be.
 PRINTED: list[tuple[str, Callable[[Path], float], float, float, str]] = [
     ("images/stp-1.stp", _heights, 13.7008e-9, 1e-4, "WSxM: Z Amplitude"),
@@ -176,14 +194,37 @@ PRINTED: list[tuple[str, Callable[[Path], float], float, float, str]] = [
      "JPK: relative setpoint"),
     ("curves/fmt-jpk-fd_spot3-0192.jpk-force", _trigger, 1.3137932359860578 * 7.000143623e-8 * 0.0434936664, 0.01,
      "JPK: relative setpoint"),
+    ("corpus/images/gwyfile-test.gwy", lambda f: float(np.ptp(_unitless(f))), 0.001e-6, 1e-12,
+     "Gwyddion: lat_synth(height=0,001) in its log"),
+    ("corpus/images/matrix-3.txt", lambda f: nt.images.read(f).size[0], 10e-6, 1e-9,
+     "Gwyddion's text: Height: 10.00 um"),
+    ("corpus/curves/fmt-hdf5-fd_version_0.13.3.h5", _trigger, 6e-9, 0.01, "HDF5: setpoint of JPK"),
+    (f"corpus/curves/{NOVA}", lambda f: float(_nova(f).max()), 1.4726e-9 * 61.0 * 0.055, 1e-9, "Nova: max DFL [nA]"),
+]  # fmt: skip
+
+#: What other readers assert of the same files in their own tests.
+ASSERTED: list[tuple[str, Callable[[Path], float], float, float, str]] = [
+    ("corpus/images/gwyfile-test.gwy", lambda f: float(_unitless(f)[::-1][44, 33]), 0.00085301e-6, 1e-5, "gwyfile"),
+    ("corpus/images/matrix-3.txt", lambda f: float(nt.images.read(f).heights.std()), 3.5222918750198742e-08, 1e-12,
+     "SurfaceTopography: rms height"),
+    ("corpus/images/sample_0.h5-jpk", lambda f: sum(float(nt.images.read(f, f"Height trace frame {n}").heights.sum())
+     for n in (1, 2, 3, 4)), 48525583.047271535e-9, 1e-12, "AFMReader: sum of four frames"),
+    ("corpus/curves/fmt-hdf5-fd_version_0.13.3.h5", lambda f: float(_force(f)[2000]), -7.038311459845539e-10, 1e-15,
+     "afmformats: force at 2000"),
+    (f"corpus/curves/{NOVA}", lambda f: float(np.argmax(_nova(f))), 821.0, 0.0, "afmformats: turn of the Nova curve"),
+    (f"corpus/curves/{NOVA}", lambda f: float(_nova(f).size), 1644.0, 0.0, "afmformats: points of the Nova curve"),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "read", "printed", "near", "where"), PRINTED, ids=[row[4] for row in PRINTED])
-def test_what_the_maker_prints(
+@pytest.mark.parametrize(
+    ("name", "read", "printed", "near", "where"),
+    [*PRINTED, *ASSERTED],
+    ids=[row[4] for row in (*PRINTED, *ASSERTED)],
+)
+def test_what_the_maker_prints_and_others_assert(
     name: str, read: Callable[[Path], float], printed: float, near: float, where: str
 ) -> None:
-    """Gwyddion's files, text matrices, HDF5 and Nova's text have no such value in the files at hand."""
+    """Where the files come from stands in docs/formats.md; NANOTOUCH_DATA names a folder that holds them."""
     path = synthetic.DATA / name
     if not path.exists():
         pytest.skip(f"real data not here: {path}")
