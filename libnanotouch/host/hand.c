@@ -38,7 +38,7 @@ nt_proxy nt_proxy_begin(const nt_proxy_facts *facts)
     hand.step = (facts->indentation + facts->load / hand.stiffness) / STEPS;
     hand.limit = NT_PROXY_LOAD * facts->limit;
     hand.press = PRESS * facts->load;
-    hand.reach = facts->sunk + hand.limit / hand.stiffness;
+    hand.reach = (isfinite(facts->sunk) ? facts->sunk : 0.0) + hand.limit / hand.stiffness;
     return hand;
 }
 
@@ -79,12 +79,19 @@ static void catch_up(nt_proxy *hand, const nt_frame *frame)
     hand->height -= way[NT_Z] * hand->facts.alpha_p;
 }
 
+/* How far down it may go. A sample that relaxes has no depth of a force: in contact the spring alone tells. */
+static double room_of(const nt_proxy *hand, const nt_frame *frame)
+{
+    if (!isfinite(frame->gap))
+        return (hand->limit - frame->tip_force[NT_Z]) / hand->stiffness; /* what a lever feels */
+    const double gap = isfinite(hand->facts.sunk) ? frame->gap : fmax(frame->gap, 0.0);
+    return hand->height - frame->tip_position[NT_Z] + gap + hand->reach;
+}
+
 int nt_proxy_move(nt_proxy *hand, const double way[NT_AXES], const nt_frame *frame)
 {
     catch_up(hand, frame);
-    const double force = frame->tip_force[NT_Z];
-    const double room = isfinite(frame->gap) ? hand->height - frame->tip_position[NT_Z] + frame->gap + hand->reach
-                                             : (hand->limit - force) / hand->stiffness; /* what a lever feels */
+    const double room = room_of(hand, frame);
     const double down = isfinite(room) ? fmin(way[NT_Z], fmax(room, 0.0)) : fmin(way[NT_Z], 0.0);
     shift(hand, (const double[NT_AXES]){way[NT_X], way[NT_Y], down}, frame);
     return down == way[NT_Z];
@@ -102,7 +109,8 @@ void nt_proxy_lift(nt_proxy *hand, const nt_frame *frame)
     catch_up(hand, frame);
     hand->presses = 0;
     const double stretch = hand->facts.pull_off / hand->stiffness;
-    const double up = frame->tip_position[NT_Z] + hand->facts.clearance + 1.2 * stretch - hand->height;
+    const double surface = frame->tip_position[NT_Z] + fmax(-known(frame->gap), 0.0);
+    const double up = surface + hand->facts.clearance + 1.2 * stretch - hand->height;
     shift(hand, (const double[NT_AXES]){0.0, 0.0, -fmax(up, 0.0)}, frame);
 }
 

@@ -78,7 +78,9 @@ static nt_proxy hand_of(nt_session_host *host)
                                   .load = setup->scene.range.maximum_load,
                                   .limit = limit,
                                   .indentation = host->plan.largest_indentation,
-                                  .sunk = nt_law_depth(&host->plan, NT_PROXY_LOAD * limit),
+                                  .sunk = host->plan.history == NT_HISTORY_RELAXES
+                                              ? (double)NAN
+                                              : nt_law_depth(&host->plan, NT_PROXY_LOAD * limit),
                                   .start_height = nt_session_start_height(host->session),
                                   .held = nt_session_master_start(host->session),
                                   .x = setup->x,

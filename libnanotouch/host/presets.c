@@ -39,6 +39,11 @@ static const nt_host_preset presets[] = {
     {"cell_in_liquid", "A living cell", "cell_in_liquid",
      "Nothing snaps: feel the brush first, then the cell. Press on the nucleus, then on the rim.", "", 0.01,
      NT_HOST_NOTHING},
+    {"chondrocyte", "A cell that relaxes", "chondrocyte",
+     "Press quickly and hold: the force falls under your hand. Then lift: the dent comes back late.", "", 0.01,
+     NT_HOST_NOTHING},
+    {"polymer_gel", "A polymer gel", "polymer_gel",
+     "Press fast, then slowly, to the same depth: the gel is stiffer for the fast hand.", "", 0.01, NT_HOST_NOTHING},
 };
 
 const nt_host_preset *nt_host_presets(int *count)

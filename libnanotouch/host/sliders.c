@@ -15,6 +15,11 @@ typedef struct row {
 static const row rows[] = {
     {NT_HOST_SCENE, "medium.relative_humidity", "humidity", 0.0, 0.95, -1},
     {NT_HOST_SCENE, "sample.youngs_modulus", "sample modulus", 0.02, 20.0, -1},
+    {NT_HOST_SCENE, "rheology.modulus", "modulus", 0.02, 20.0, -1},
+    {NT_HOST_SCENE, "rheology.exponent", "exponent", 0.0, 0.6, -1},
+    {NT_HOST_SCENE, "rheology.equilibrium_modulus", "modulus at rest", 0.1, 10.0, -1},
+    {NT_HOST_SCENE, "rheology.arm_modulus_1", "what relaxes", 0.1, 10.0, -1},
+    {NT_HOST_SCENE, "rheology.relaxation_time_1", "relaxation time", 0.1, 10.0, -1},
     {NT_HOST_SCENE, "adhesion.work_of_adhesion", "work of adhesion", 0.1, 4.0, NT_ADHESION_GIVEN_WORK},
     {NT_HOST_SCENE, "adhesion.sample_surface_energy", "surface energy", 0.1, 4.0, NT_ADHESION_GIVEN_ENERGIES},
     {NT_HOST_SCENE, "tip.radius", "tip radius", 0.5, 4.0, -1},
@@ -56,9 +61,22 @@ const nt_field *nt_host_field(const char *name, nt_host_kind *kind)
     return NULL;
 }
 
+/* Moduli are those of the kernel that the sample has. */
+static int is_of_kernel(const char *field, nt_rheology_kind kind)
+{
+    if (strcmp(field, "sample.youngs_modulus") == 0)
+        return kind == NT_RHEOLOGY_ELASTIC;
+    if (strncmp(field, "rheology.", 9) != 0)
+        return 1;
+    const int is_power = strcmp(field, "rheology.modulus") == 0 || strcmp(field, "rheology.exponent") == 0;
+    return kind != NT_RHEOLOGY_ELASTIC && is_power == (kind == NT_RHEOLOGY_POWER_LAW);
+}
+
 /* Whether a row means something: what is 0 and no humidity stays away. */
 static int is_offered(const row *of, const nt_scene *scene, double value)
 {
+    if (!is_of_kernel(of->field, scene->rheology.kind))
+        return 0;
     if (strcmp(of->field, "medium.relative_humidity") == 0)
         return scene->medium.kind == NT_MEDIUM_AIR && scene->medium.surface_tension > 0.0;
     return value > 0.0 && (of->given < 0 || of->given == (int)scene->adhesion.given);

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from nanotouch import Scene, Session, Surface, Topography, presets, surface
+from nanotouch import Rheology, Scene, Session, Surface, Topography, presets, surface
 from nanotouch.errors import InvalidValue
 from nanotouch.scene.interaction import Interaction
 from nanotouch_app.common import scenes, surfaces
@@ -21,9 +21,10 @@ SCENE_PAGE = Path(__file__).resolve().parents[2] / "docs" / "scene.md"
 
 # a sample that yields, and glass whose van der Waals forces exceed its work of adhesion, warn of that
 QUIET = [name for name in PRESETS if name not in scenes.MADE]
+IN_LIQUID = ("cell_in_liquid", "chondrocyte", "polymer_gel")  # whose drag is left out
 
 
-@pytest.mark.parametrize("name", [name for name in QUIET if name != "cell_in_liquid"])
+@pytest.mark.parametrize("name", [name for name in QUIET if name not in IN_LIQUID])
 def test_a_first_touch_warns_of_nothing(name: str) -> None:
     """Neither as planned nor in a session; the session keeps to the largest load, and its plan is that of the scene."""
     scene, rig = scenes.of_preset(name)
@@ -37,14 +38,14 @@ def test_a_first_touch_warns_of_nothing(name: str) -> None:
 
 @pytest.mark.parametrize("name", QUIET)
 def test_a_first_touch_of_its_surface_warns_of_nothing(name: str) -> None:
-    """As `nanotouch touch --scene NAME` does it. About the cell it is told that drag is left out, and that a deforming
-    sample is solved for the radius of the tip alone."""
+    """As `nanotouch touch --scene NAME` does it. In liquid it is told that drag is left out, and that a sample that
+    deforms, or relaxes, is solved for the radius of the tip alone."""
     scene, rig = scenes.of_preset(name)
     session = Session(scene, rig, surface=Surface.touched_by(scene, surfaces.of_scene(name)))
     left_out = ("viscous drag at the fastest approach, left out", "curvature of the surface, which this tip's law")
     said = [warning.text for warning in session.plan.warnings if not warning.text.startswith(left_out)]
     assert said == []
-    assert name == "cell_in_liquid" or session.plan.warnings == []
+    assert name in IN_LIQUID or session.plan.warnings == []
     assert session.guarantee().warning is None
     assert session.calm().is_calm
 
@@ -169,3 +170,41 @@ def test_the_cell_feels_as_fur_over_jelly() -> None:
         assert float(plan.force(gap)) == pytest.approx(force, rel=0.03)
     assert plan.pull_off_force < 1e-14
     assert "deforms under all forces" in str(plan)
+
+
+CHONDROCYTE = (21e3, 9.3e3, 2.8e3)  # at once, in the end [Pa], viscosity [Pa s]: the abstract of Nguyen et al. (2010)
+
+
+def test_the_chondrocyte_has_the_moduli_of_its_source() -> None:
+    """And sinks in as said: Hertz by hand, 4/3 E/(1 - nu^2) sqrt(R) delta^(3/2), to the sphere's few per cent."""
+    rheology = presets.chondrocyte()[0].rheology
+    quick, slow, viscosity = CHONDROCYTE
+    kernel = Rheology.standard_linear_solid(
+        rheology.equilibrium_modulus, rheology.arm_modulus_1, rheology.relaxation_time_1
+    )
+    at = kernel.relaxation(np.array([1e-6, 2.0]))
+    assert at[0] == pytest.approx(quick, rel=1e-4)
+    assert at[1] == pytest.approx(slow, rel=1e-3)
+    assert rheology.arm_modulus_1 * rheology.relaxation_time_1 == pytest.approx(viscosity, rel=1e-12)
+    for modulus, depth in ((quick, 0.17e-6), (slow, 0.29e-6)):
+        hertz = (4e-9 / (16.0 / 9.0 * modulus * np.sqrt(2.5e-6))) ** (2.0 / 3.0)
+        assert hertz == pytest.approx(depth, rel=0.03)
+    assert slow / quick == pytest.approx(0.44, abs=0.005)
+
+
+def test_the_gel_sinks_in_as_said() -> None:
+    """Under a steady load delta^(3/2) goes as J(t): a decade of time gives 10^(2 beta/3) - 1, a tenth."""
+    scene = presets.polymer_gel()[0]
+    gel = Rheology.power_law(scene.rheology.modulus, scene.rheology.exponent)
+    depth = (1e-9 * gel.creep(np.array([1.0, 10.0, 100.0])) / (16.0 / 9.0 * np.sqrt(2.5e-6))) ** (2.0 / 3.0)
+    assert depth[0] == pytest.approx(0.35e-6, rel=0.02)
+    assert depth[1:] / depth[:-1] == pytest.approx(1.1, abs=0.02)
+
+
+@pytest.mark.parametrize("name", ["chondrocyte", "polymer_gel"])
+def test_a_sample_that_relaxes_gives_way_under_a_hand_that_holds_still(name: str) -> None:
+    scene, rig = getattr(presets, name)()
+    session = Session(scene, rig)
+    recording = session.run()
+    assert not recording.columns["state"].any()
+    assert session.plan.bound < 0.01

@@ -15,9 +15,9 @@ import pictures
 import pytest
 from nanotouch import Rig, reference
 from nanotouch.plots import new_figure
-from nanotouch_app.common.scenes import LIBRARY as PRESETS
 from nanotouch_app.main import main
 from nanotouch_app.studies.tradeoff import FILES, answer, errors, laws, measure, page, plans, rules, touch
+from nanotouch_app.studies.tradeoff.plans import PRESETS
 from nanotouch_app.studies.tradeoff.solvers import DMT, EXACT, HERTZ, JKR, JKR_TABLE, POLISHED, SOLVERS, TABLE, Solver
 
 pytest.importorskip("matplotlib")

@@ -74,6 +74,8 @@ OF_SCENE: dict[str, Callable[[], nt.Topography]] = {
     "polystyrene_ball": lambda: relief(8e-6, 10e-9, "polished glass", seed=7),
     "inas_dots": lambda: nt.surface.dots(pixels=320),
     "cell_in_liquid": cell,
+    "chondrocyte": lambda: cell(40e-6, 1.5e-6),
+    "polymer_gel": lambda: relief(20e-6, 60e-9, "polymer gel", seed=9),
     "paper_inas": nt.surface.dots,
     "grating": lambda: nt.surface.grating(size=12e-6, pixels=384, height=100e-9),
     "spikes": lambda: nt.surface.spikes(pixels=256),

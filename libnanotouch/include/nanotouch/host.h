@@ -92,7 +92,7 @@ typedef struct nt_proxy_facts {
     int axes;                   /* of the master */
     double clearance, pull_off; /* [m], [N] */
     double load, limit;         /* the max planned load, the force limit [N] */
-    double indentation, sunk;   /* at that load, at NT_PROXY_LOAD of the limit [m] */
+    double indentation, sunk;   /* at that load; at NT_PROXY_LOAD of the limit, NaN of a sample that relaxes [m] */
     double start_height, held;  /* of tip and master at the start [m] */
     double x, y, width, height; /* where it starts, on a surface of this size; width 0: none [m] */
 } nt_proxy_facts;
@@ -118,7 +118,7 @@ NT_API nt_proxy nt_proxy_begin(const nt_proxy_facts *facts);
 NT_API int nt_proxy_move(nt_proxy *hand, const double way[NT_AXES], const nt_frame *frame);
 /* Down by steps of the wheel, longer ones far from the surface; up if below 0. */
 NT_API int nt_proxy_wheel(nt_proxy *hand, double steps, const nt_frame *frame);
-/* Draws back by the clearance, and by what adhesion stretches the springs before it lets go. */
+/* Draws back to the clearance over the surface, and by what adhesion stretches the springs before it lets go. */
 NT_API void nt_proxy_lift(nt_proxy *hand, const nt_frame *frame);
 /* What an arm does by itself in a time [s]: it presses, gives way, and stays by a stopped tip. */
 NT_API void nt_proxy_follow(nt_proxy *hand, const nt_frame *frame, double elapsed);

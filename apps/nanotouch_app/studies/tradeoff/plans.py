@@ -14,9 +14,11 @@ from nanotouch.errors import InvalidValue
 from nanotouch.plots import BLUE, VERMILION, new_figure
 from numpy.typing import NDArray
 
-from nanotouch_app.common.scenes import LIBRARY as PRESETS
+from nanotouch_app.common.scenes import LIBRARY
 from nanotouch_app.studies.tradeoff.drawing import Label, label, logarithmic, settle
 
+PRESETS = tuple(name for name in LIBRARY if getattr(presets, name)()[0].rheology.kind == "elastic")
+"""those whose force is a function of the gap; one that relaxes depends on time (docs/rheology.md)"""
 ACCURACIES = tuple(float(f"{digit}e{power}") for power in range(-1, -11, -1) for digit in (3, 1))
 """0.3 .. 1e-10"""
 ROUNDING = 1e-12
