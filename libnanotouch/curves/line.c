@@ -49,10 +49,12 @@ NT_VARIANTS static sums weigh_up(const points *of, const nt_curve_baseline *line
                   nt_lanes_sum(product)};
 }
 
-/* Weighted least squares; scatter 0: all weigh the same. The line's force is that at x = 0. */
+/* Weighted least squares; scatter 0, or too small to divide by: all weigh the same. The line's force is that at x = 0.
+ */
 static void move_line(const points *of, double scatter, nt_curve_baseline *line)
 {
-    const sums s = weigh_up(of, line, scatter > 0.0 ? 1.0 / (NT_TUKEY * scatter) : 0.0);
+    const double unit = 1.0 / (NT_TUKEY * scatter);
+    const sums s = weigh_up(of, line, isfinite(unit) ? unit : 0.0);
     const double spread = s.squares - s.x * s.x / s.total;
     const double slope = spread > 0.0 ? (s.product - s.x * s.rest / s.total) / spread : 0.0;
     line->slope += slope;

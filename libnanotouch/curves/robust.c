@@ -42,7 +42,7 @@ static double select(double values[], long count, long k)
         }
         if (below == 0) { /* none is smaller: all that are equal at once */
             below = part(values, count, pivot, 1);
-            if (k < below)
+            if (k < below || below == 0) /* NaN is not even itself */
                 return pivot;
         }
         values += below;

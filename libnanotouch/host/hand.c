@@ -138,8 +138,11 @@ void nt_proxy_follow(nt_proxy *hand, const nt_frame *frame, double elapsed)
 
 void nt_proxy_resume(nt_proxy *hand, const nt_frame *frame)
 {
-    for (int axis = 0; axis < NT_AXES; ++axis)
-        hand->place[axis] = frame->master_position[axis];
-    hand->height = frame->tip_position[NT_Z] - frame->tip_force[NT_Z] / hand->stiffness;
+    const double height = frame->tip_position[NT_Z] - frame->tip_force[NT_Z] / hand->stiffness;
+    for (int axis = 0; axis < NT_AXES; ++axis) /* what nobody knows stays as it was */
+        if (isfinite(frame->master_position[axis]))
+            hand->place[axis] = frame->master_position[axis];
+    if (isfinite(height))
+        hand->height = height;
     (void)nt_proxy_move(hand, (const double[NT_AXES]){0.0, 0.0, 0.0}, frame);
 }

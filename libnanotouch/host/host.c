@@ -5,6 +5,7 @@
 
 #include "host/state.h"
 
+static const double MAX_SEED = 9007199254740992.0; /* whole numbers that a double holds */
 static const char *const STOPS = "The hand stops here: the force limit is near.";
 
 size_t nt_host_size(void)
@@ -274,6 +275,10 @@ nt_status nt_host_ask_task(nt_session_host *host, const nt_host_asked *asked)
         return NT_OK;
     if (!task)
         return refuse_task(host, asked->text);
+    if (!(asked->value[1] >= 0.0 && asked->value[1] <= MAX_SEED))
+        return nt_host_refuse_filled(
+            host, "seed {seed}: valid is 0 .. {most}",
+            (const nt_figure[]){{"seed", asked->value[1], "#", 0}, {"most", MAX_SEED, "#", 0}, {0}});
     const int lacks = task->about.pushed != NT_HOST_NOTHING && task->about.pushed != host->pushed;
     if (lacks || (asked->value[0] != 0.0 && (strcmp(host->name, task->about.preset) != 0 || !is_meant(host)))) {
         copy(host->wants, sizeof host->wants, task->about.preset);
@@ -289,7 +294,7 @@ const char *nt_host_wants(const nt_session_host *host)
     return host->wants[0] ? host->wants : NULL;
 }
 
-static nt_status ask_choice(nt_session_host *host, int number)
+static nt_status ask_choice(nt_session_host *host, double number)
 {
     nt_trainer *trainer = &host->trainer;
     if (!trainer->task)
@@ -302,12 +307,12 @@ static nt_status ask_choice(nt_session_host *host, int number)
         offered += *at == '|';
     if (trainer->is_done || !trainer->task->choose)
         return nt_host_refuse_filled(host, "this task offers no choice", NULL);
-    if (offered && !(number >= 0 && number < offered))
+    if (offered && !(number >= 0.0 && number < offered)) /* nor NaN */
         return nt_host_refuse_filled(
             host, "choice {number}: valid is 1 .. {offered}",
-            (const nt_figure[]){{"number", number + 1, "#", 0}, {"offered", offered, "#", 0}, {0}});
+            (const nt_figure[]){{"number", number + 1.0, "#", 0}, {"offered", offered, "#", 0}, {0}});
     host->due |= NT_DUE_TASK;
-    return trainer->task->choose(host, number);
+    return trainer->task->choose(host, offered ? (int)number : 0);
 }
 
 static nt_status ask_answer(nt_session_host *host, double value)
@@ -345,7 +350,7 @@ nt_status nt_host_ask(nt_session_host *host, const nt_host_asked *asked)
     if (!strcmp(what, "task"))
         return nt_host_ask_task(host, asked);
     if (!strcmp(what, "choose"))
-        return ask_choice(host, (int)asked->value[0]);
+        return ask_choice(host, asked->value[0]);
     if (!strcmp(what, "say"))
         return ask_answer(host, asked->value[0]);
     if (!strcmp(what, "report")) { /* a view that has just come knows nothing */

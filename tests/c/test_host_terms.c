@@ -130,6 +130,30 @@ static void test_without_a_session_everything_is_refused_in_words(void **state)
     test_free(host);
 }
 
+/* A slave that has failed gives frames without numbers: the hand stays where it was. */
+static void test_a_hand_resumes_where_it_is_known_to_be(void **state)
+{
+    (void)state;
+    const nt_proxy_facts facts = {.alpha_p = 1e-5,
+                                  .alpha_f = 1e6,
+                                  .lever = 8.0,
+                                  .travel = 0.02,
+                                  .axes = 3,
+                                  .load = 1e-7,
+                                  .limit = 1e-7,
+                                  .start_height = 1e-7,
+                                  .held = -0.01};
+    nt_proxy hand = nt_proxy_begin(&facts);
+    nt_frame frame = {
+        .master_position = {1e-3, (double)NAN, -5e-3}, .tip_position = {[NT_Z] = (double)NAN}, .gap = (double)NAN};
+    nt_proxy_resume(&hand, &frame);
+    assert_true(hand.place[NT_X] == 1e-3 && hand.place[NT_Y] == 0.0 && hand.place[NT_Z] == -5e-3);
+    assert_true(hand.height == 1e-7);
+    frame.tip_position[NT_Z] = 3e-8;
+    nt_proxy_resume(&hand, &frame);
+    assert_true(hand.height == 3e-8);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -138,6 +162,7 @@ int main(void)
         cmocka_unit_test(test_a_staircase_settles_where_seven_of_ten_are_right),
         cmocka_unit_test(test_a_staircase_ends_for_the_perfect_and_for_the_blind),
         cmocka_unit_test(test_words_are_as_people_write_them),
+        cmocka_unit_test(test_a_hand_resumes_where_it_is_known_to_be),
         cmocka_unit_test(test_without_a_session_everything_is_refused_in_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from nanotouch import _core
 from nanotouch._arrays import Floats, as_floats, plain
 from nanotouch._io.files import toml_tables
-from nanotouch._io.words import told
+from nanotouch._io.words import shortened, told
 from nanotouch.contact.geometry import KINDS, Shape
 from nanotouch.errors import InvalidValue
 from nanotouch.units import key_spellings, to_si
@@ -173,7 +173,7 @@ class Rheology:
                 continue
             if key not in spellings:
                 likely = ", ".join(f"{name}{_example(name)}" for name in _KEYS[kind])
-                raise InvalidValue(f"[rheology] has no key {key} for a {kind}; it takes {likely}")
+                raise InvalidValue(f"[rheology] has no key {shortened(key)} for a {kind}; it takes {likely}")
             name, factor = spellings[key]
             if name in values:
                 raise InvalidValue(f"[rheology] has {name} twice: give one")

@@ -16,9 +16,10 @@
 
 #include "nanotouch/hal_backend.h"
 
-#define PERIOD (1.0 / 125.0)  /* of the device's heartbeats [s] */
-#define TRAVEL 0.02           /* z runs over half of it to either side [m] */
-#define HELLO_EVERY 250000000 /* the device forgets who is silent for a second [ns] */
+#define PERIOD (1.0 / 125.0)             /* of the device's heartbeats [s] */
+#define TRAVEL 0.02                      /* z runs over half of it to either side [m] */
+#define HELLO_EVERY 250000000            /* the device forgets who is silent for a second [ns] */
+#define LATEST_STAMP ((uint64_t)1 << 61) /* of a device's clock: 73 years [ns] */
 enum { DIFFERENCES = 4, MOST = 256, BODY = 52, REPORT = BODY + 4 };
 
 typedef struct pointer {
@@ -82,16 +83,16 @@ static int understand(pointer *p, const unsigned char *report, ssize_t length)
     if (length != REPORT || memcmp(report, "NTP1", 4) != 0 || crc32_of(report, BODY) != number(report + BODY, 4))
         return 0;
     const uint32_t run = (uint32_t)number(report + 4, 4);
-    const uint64_t sequence = number(report + 8, 8), bits = number(report + 40, 8);
+    const uint64_t sequence = number(report + 8, 8), stamp = number(report + 16, 8), bits = number(report + 40, 8);
     double z;
     memcpy(&z, &bits, sizeof z);
-    if ((p->seen > 0 && run == p->run && sequence <= p->sequence) || !(fabs(z) <= 0.5 * TRAVEL))
+    if ((p->seen > 0 && run == p->run && sequence <= p->sequence) || !(fabs(z) <= 0.5 * TRAVEL) || stamp > LATEST_STAMP)
         return 0;
     if (run != p->run) /* the device has been started anew: another clock */
         p->seen = 0;
     p->run = run;
     p->sequence = sequence;
-    p->reading.time = convert(p, (int64_t)number(report + 16, 8));
+    p->reading.time = convert(p, (int64_t)stamp);
     p->reading.position[NT_Z] = z;
     p->reading.valid = 1u << NT_Z;
     p->reading.buttons = (uint32_t)number(report + 48, 4);

@@ -25,6 +25,11 @@ def told(value: object) -> str:
     return text if len(text) <= 200 else f"{text[:100]} ... ({len(text)} characters)"
 
 
+def shortened(name: str) -> str:
+    """A wrong name, unless it is too long for a sentence."""
+    return name if len(name) <= 100 else f"{name[:50]} ... ({len(name)} characters)"
+
+
 def printable(text: str) -> str:
     """The same where it can be printed; of a file's name, bytes that are no character are written out."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")

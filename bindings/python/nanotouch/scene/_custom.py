@@ -11,6 +11,7 @@ from importlib.metadata import entry_points
 from typing import Any
 
 from nanotouch import _core
+from nanotouch._io.words import shortened
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.units import UNITS, key_spellings, to_si
 
@@ -62,7 +63,9 @@ class CustomTerm:
                 for spelling, factor in key_spellings(name, self.units.get(name, "")).items()
             }
             if key not in spelled:
-                raise InvalidValue(f"[terms.{self.name}] has no key {key}; it has {', '.join(self.parameters)}")
+                raise InvalidValue(
+                    f"[terms.{self.name}] has no key {shortened(key)}; it has {', '.join(self.parameters)}"
+                )
             name, factor = spelled[key]
             values[name] = to_si(self._number(name, value), factor)
         return values

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 import numpy as np
 
 from nanotouch._io import html
-from nanotouch._io.words import told
+from nanotouch._io.words import shortened, told
 from nanotouch.errors import InvalidValue
 from nanotouch.units import engineering, from_si, key_spellings, to_si
 
@@ -148,7 +148,8 @@ class Description(Mapping[str, float]):
         self._check_free(type(self).__name__)
         for section in tables:
             if section not in Description._all_sections:
-                raise InvalidValue(f"unknown section [{section}]; known are {', '.join(Description._all_sections)}")
+                known = ", ".join(Description._all_sections)
+                raise InvalidValue(f"unknown section [{shortened(section)}]; known are {known}")
         for section in self.sections():
             seen: dict[str, str] = {}
             for key, value in as_table(section, tables.get(section, {})).items():
@@ -185,7 +186,7 @@ class Description(Mapping[str, float]):
             return spellings[key]
         near = difflib.get_close_matches(key, spellings, 1)
         hint = f"did you mean {near[0]}?" if near else f"it has {', '.join(self.keys_of(section))}"
-        raise InvalidValue(f"[{section}] has no key {key}; {hint}")
+        raise InvalidValue(f"[{section}] has no key {shortened(key)}; {hint}")
 
     def check(self) -> None:
         """Let the C library check it: :class:`~nanotouch.errors.InvalidValue` names the first bad field."""

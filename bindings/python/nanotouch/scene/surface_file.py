@@ -20,7 +20,7 @@ from typing import Any
 
 from nanotouch import images
 from nanotouch._io.digest import file_digest
-from nanotouch._io.words import told
+from nanotouch._io.words import shortened, told
 from nanotouch.errors import InvalidValue
 from nanotouch.images.values import QUANTITIES, Fill
 from nanotouch.scene import Scene
@@ -92,7 +92,7 @@ class SurfaceFile:
         for key, value in as_table("surface", tables["surface"]).items():
             known = (*_TEXTS, *QUANTITIES, *(f"{name}_unit" for name in QUANTITIES))
             if key not in known:
-                raise InvalidValue(f"[surface] has no key {key}; it has {', '.join(known)}")
+                raise InvalidValue(f"[surface] has no key {shortened(key)}; it has {', '.join(known)}")
             if not isinstance(value, str):
                 raise InvalidValue(f"[surface] {key} = {told(value)}: it must be a text")
             given[key] = value

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.units import key_spellings, to_si
 
@@ -80,4 +81,4 @@ class Table:
 
     def done(self) -> None:
         if self.left:
-            raise InvalidValue(f"[{self.where}] has no key {next(iter(self.left))!r}")
+            raise InvalidValue(f"[{self.where}] has no key {told(next(iter(self.left)))}")

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from nanotouch import _core
 from nanotouch._io.files import toml_tables
+from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.touch import _rig_chips, allowed_code
 from nanotouch.touch._rig_table import AXES, Table, keys_of, unit_of
@@ -176,7 +177,7 @@ def _taken(half: str, tables: dict[str, Any], folder: Path) -> RealHalf | None:
     else:
         del tables[half]
         if rest:
-            raise InvalidValue(f"[{half}] has no key {next(iter(rest))!r}")
+            raise InvalidValue(f"[{half}] has no key {told(next(iter(rest)))}")
     if backend == "simulated":
         return None
     table = Table(half, {key: given[key] for key in given if key in own and key != "backend"})
