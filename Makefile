@@ -7,7 +7,7 @@ VENV := .venv/bin
 # five times the processor time with two.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz sanitize sanitize-sample mutate damage corpus heavy adversary windows macos kernel conformance bench lint format lock sbom api deb release versions clean
+.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz coverage sanitize sanitize-sample mutate damage corpus heavy adversary windows macos kernel conformance bench lint format lock sbom api deb release versions clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -49,11 +49,15 @@ page:  ## the touch in one HTML file, build/page/nanotouch-touch.html; needs nod
 check: page  ## the page in Chromium: touched, changed, offline, attacked; some minutes
 	@nice node --test --test-concurrency=1 tests/page/test_*.mjs
 
-fuzz:  ## random input to the C library, with sanitizers; about a minute
+fuzz:  ## random input to each entry of the C library, with sanitizers, going on from the last run: make fuzz HOURS=1; else two minutes
 	@tools/setup.sh fuzz
 	@cmake --preset fuzz --log-level WARNING
 	@cmake --build --preset fuzz
-	@ctest --preset fuzz -j $(JOBS)
+	@tools/fuzz.sh $(or $(HOURS),0.033) $(JOBS)
+
+coverage:  ## lines, branches and MC/DC that the C tests reach, against their floors (docs/assurance.md); a quarter of an hour
+	@tools/setup.sh coverage
+	@python3 tools/coverage.py --jobs $(JOBS) $(if $(RAISE),--raise) $(if $(MISSING),--missing $(MISSING))
 
 sanitize:  ## clang's address, undefined-behaviour and thread sanitizers over all C tests and those of the Python extensions
 	@tools/setup.sh sanitize
@@ -68,9 +72,10 @@ mutate:  ## whether the tests notice small faults: a seeded sample of mutants by
 	@$(VENV)/python tools/mutate c libnanotouch/control libnanotouch/session libnanotouch/hal --count $(or $(COUNT),100) --seed $(or $(SEED),1)
 	@$(VENV)/python tools/mutate python --count $(or $(COUNT),20) --seed $(or $(SEED),1)
 
-damage:  ## 2000 damaged files through the readers of images and curves; some minutes
+damage:  ## 2000 damaged files through the readers of images and curves, and as many scenes, rigs, recordings, messages; COUNT; some minutes
 	@tools/setup.sh test
-	@$(VENV)/python tests/python/mutations.py
+	@$(VENV)/python tests/python/mutations.py --count $(or $(COUNT),2000) --seed $(or $(SEED),1)
+	@$(VENV)/python tests/heavy/descriptions.py --count $(or $(COUNT),2000) --seed $(or $(SEED),1)
 
 corpus:  ## 2000 made files with known answers (SEED=first), or every file under a folder against other readers: make corpus DIR=folder
 	@tools/setup.sh test

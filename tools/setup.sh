@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # All the set-up of `make demo` and `make test`: system packages, .venv, libgpiod 2, the package with its extras.
-# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|lint|fuzz|sanitize|mutate|kernel|page|wheels|windows
+# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|lint|fuzz|coverage|sanitize|mutate|kernel|page|wheels|windows
 set -eu
 cd "$(dirname "$0")/.."
-profile=${1:?usage: tools/setup.sh demo|docs|test|lint|fuzz|sanitize|mutate|kernel|page|wheels|windows}
+profile=${1:?usage: tools/setup.sh demo|docs|test|lint|fuzz|coverage|sanitize|mutate|kernel|page|wheels|windows}
 say() {
   if [ -t 2 ] && [ -z "${NO_COLOR:-}" ]; then printf '\033[1m%s\033[0m\n' "-- $*" >&2; else echo "-- $*" >&2; fi
 }
@@ -23,6 +23,8 @@ elif [ "$profile" = lint ]; then
   extras=all,test,lint
 elif [ "$profile" = fuzz ]; then
   packages="build-essential cmake ninja-build pkg-config clang libclang-rt-dev"
+elif [ "$profile" = coverage ]; then
+  packages="build-essential cmake ninja-build pkg-config python3 clang-19 llvm-19 libclang-rt-19-dev libcmocka-dev libiio-dev"
 elif [ "$profile" = wheels ]; then
   packages="build-essential cmake ninja-build python3-venv python3-dev curl ca-certificates xz-utils bzip2"
 elif [ "$profile" = windows ]; then
@@ -143,7 +145,7 @@ install_zig() {
 }
 
 install_packages
-case $profile in fuzz | wheels | windows) exit 0 ;; esac # no .venv of ours
+case $profile in fuzz | coverage | wheels | windows) exit 0 ;; esac # no .venv of ours
 make_venv
 mkdir -p build
 fetch_libgpiod
