@@ -205,6 +205,36 @@ def test_what_a_header_says_twice_or_not_in_full_is_told(tmp_path: Path) -> None
     assert "an offset of the force of 1 nN is left out" in curve.meta["notes"][0]
 
 
+def test_properties_are_those_of_java(tmp_path: Path) -> None:
+    """A value that goes on in the next line, an escaped letter; a number is one as Java writes it."""
+    parted = (FORCE + b"scaling.multiplier=0.8", FORCE + b"scaling.multiplier=0.\\\n   8")
+    escaped = (FORCE + b"scaling.unit.unit=N", FORCE + b"scal\\u0069ng.unit.unit=\\u004e")
+    (curve,), (plain,) = curves.read(edited(tmp_path, parted, escaped)), curves.read(edited(tmp_path))
+    assert curve.meta["spring constant"] == 0.8
+    np.testing.assert_array_equal(curve.segments[0].force, plain.segments[0].force)  # type: ignore[arg-type]
+    with pytest.raises(ReadError, match="multiplier' is '0_8', no number"):
+        curves.read(edited(tmp_path, (FORCE + b"scaling.multiplier=0.8", FORCE + b"scaling.multiplier=0_8")))
+
+
+def test_a_conversion_that_is_not_defined_is_none(tmp_path: Path) -> None:
+    undefined = (FORCE + b"base", FORCE + b"defined=false\n" + FORCE + b"base")
+    with pytest.raises(ReadError, match="states no spring constant"):
+        curves.read(edited(tmp_path, undefined))
+    (curve,) = curves.read(edited(tmp_path, undefined), spring_constant=0.4)
+    assert curve.meta["spring constant"] == 0.4
+
+
+def test_data_is_read_from_the_file_that_the_header_names(tmp_path: Path) -> None:
+    """No other file is taken instead, and none outside the segment."""
+    style = b"force-segment-header.settings.style"
+    for name in ("channels/other.dat", "../0/channels/vDeflection.dat", "/etc/passwd"):
+        named = (style, f"channel.vDeflection.data.file.name={name}\n".encode() + style)
+        with pytest.raises(ReadError, match=f"outside the segment|segments/0/{name} is missing"):
+            curves.read(edited(tmp_path, named))
+    named = (style, b"channel.vDeflection.data.file.name=channels/vDeflection.dat\n" + style)
+    assert len(curves.read(edited(tmp_path, named))) == 1
+
+
 def test_a_retraction_alone_is_read_and_told(tmp_path: Path) -> None:
     path = tmp_path / "half.jpk-force"
     with zipfile.ZipFile(single(tmp_path / "whole.jpk-force")) as whole, zipfile.ZipFile(path, "w") as half:

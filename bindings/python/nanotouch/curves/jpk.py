@@ -31,7 +31,7 @@ from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS
 from .curve import ForceCurve, Role, Segment
-from .jpk_properties import FLOATS, TYPES, Facts, Properties, as_number, grouped, pair_of, segments_of
+from .jpk_properties import FLOATS, TYPES, Facts, Properties, as_number, grouped, pairs_of, segments_of
 
 NAME = "nanotouch/jpk"
 ENDINGS = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
@@ -158,11 +158,9 @@ class Archive:
         if self._zip.getinfo(name).file_size > _MAX_PROPERTIES:
             raise ReadError(f"{self.file}: {name} is longer than {_MAX_PROPERTIES >> 20} MiB")
         found: Properties = {}
-        for line in self._zip.read(name).decode("latin-1").splitlines():
-            if line and line[0] not in "#!":
-                key, value = pair_of(line)
-                if found.setdefault(key, value) != value:
-                    raise ReadError(f"{self.file}: {name} states {key!r} as {found[key]!r} and as {value!r}")
+        for key, value in pairs_of(self._zip.read(name).decode("latin-1")):
+            if found.setdefault(key, value) != value:
+                raise ReadError(f"{self.file}: {name} states {key!r} as {found[key]!r} and as {value!r}")
         return found
 
     def _expanded(self, place: str) -> Properties:
@@ -177,11 +175,12 @@ class Archive:
     def _segment(self, facts: Facts, place: str, start: float, meta: dict[str, Any]) -> Segment:
         role = ROLES[facts.text(f"{_SETTINGS}style")]
         duration = facts.number("force-segment-header.duration")
-        channel, slot, column = self._height(place)
-        z = facts.converted(channel, slot, self._raw(facts, place, channel), "m")
-        volts = facts.converted("vDeflection", "volts", self._raw(facts, place, "vDeflection"), "V")
+        channel, slot, column = self._height(facts)
+        z = facts.converted(channel, slot, self._raw(facts, channel), "m")
+        volts = facts.converted("vDeflection", "volts", self._raw(facts, "vDeflection"), "V")
         deflection, stiffness = self._calibrated(facts, volts, meta)
-        stated = facts.number("force-segment-header.num-points")
+        key = "force-segment-header.num-points"
+        stated = facts.number(key) if key in facts.properties else z.size
         if not z.size == volts.size == stated:
             raise ReadError(f"{self.file}: {place} has {z.size} heights, {volts.size} forces, but states {stated:g}")
         _note(meta, facts, role, z.size)
@@ -212,14 +211,14 @@ class Archive:
         offset = 0.0 if stated["sensitivity"] is None else facts.offset("distance", "m")
         return volts * meta["sensitivity"] + offset, float(meta["spring constant"])
 
-    def _height(self, place: str) -> tuple[str, str, str]:
+    def _height(self, facts: Facts) -> tuple[str, str, str]:
         for channel, slot, column in HEIGHTS:
-            if f"{place}channels/{channel}.dat" in self._names:
+            if facts.data_file(channel) in self._names:
                 return channel, slot, column
-        raise ReadError(f"{self.file}: {place} has no height")
+        raise ReadError(f"{self.file}: {facts.place} has no height")
 
-    def _raw(self, facts: Facts, place: str, channel: str) -> NDArray[Any]:
-        name = f"{place}channels/{channel}.dat"
+    def _raw(self, facts: Facts, channel: str) -> NDArray[Any]:
+        name = facts.data_file(channel)
         kind = facts.number_type(channel)
         if name not in self._names or kind not in TYPES | FLOATS:
             raise ReadError(f"{self.file}: {name} is missing, or of the type {kind!r}, which is not read")

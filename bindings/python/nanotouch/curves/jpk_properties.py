@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +21,11 @@ from ..errors import ReadError
 TYPES = {"signedshort": ">i2", "unsignedshort": ">u2", "signedinteger": ">i4", "unsignedinteger": ">u4",
           "signedlong": ">i8"}  # fmt: skip
 FLOATS = {"float-data": ">f4", "double-data": ">f8", "float": ">f4", "double": ">f8"}
-_PREFIX = {"": 1.0, "k": 1e3, "m": 1e-3, "u": 1e-6, "\xb5": 1e-6, "\xc2\xb5": 1e-6, "u00b5": 1e-6, "n": 1e-9,
+_PREFIX = {"": 1.0, "k": 1e3, "m": 1e-3, "u": 1e-6, "\xb5": 1e-6, "\xc2\xb5": 1e-6, "n": 1e-9,
            "p": 1e-12}  # fmt: skip
 
+_ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{4}|.)")
+_LETTERS = {"t": "\t", "n": "\n", "r": "\r", "f": "\f"}
 _LINE = re.compile(r"\s*([^\\\s=:]*(?:\\.[^\\\s=:]*)*)\s*[=:]?\s*(.*)")
 
 Properties = dict[str, str]
@@ -69,8 +71,10 @@ class Facts:
             if len(steps) > 8:
                 raise ReadError(f"{self.file}: {self.place}: the conversions of {channel} go round")
             steps.append(f"{conversions}conversion.{slot}.")
+            if not self._is_defined(steps[-1]):
+                raise ReadError(f"{self.file}: {self.place}: {steps[-1]}defined is false: {channel} has no {slot}")
             slot = self.text(f"{steps[-1]}base-calibration-slot")
-        if self.number_type(channel) in FLOATS:
+        if self.number_type(channel) in FLOATS and not {f"{encoder}multiplier", f"{other}multiplier"} & set(self.properties):
             values = raw.astype(np.float64)
         else:
             values = raw * self.number(f"{encoder}multiplier", f"{other}multiplier")
@@ -104,10 +108,21 @@ class Facts:
             )
         return _PREFIX[prefix]
 
+    def _is_defined(self, conversion: str) -> bool:
+        return self.properties.get(f"{conversion}defined", "true") != "false"
+
+    def data_file(self, channel: str) -> str:
+        """The file of the archive that holds a channel, in the folder of the segment."""
+        usual = f"channels/{channel}.dat"
+        name = self.properties.get(f"channel.{channel}.data.file.name", usual)
+        if name.startswith("/") or ".." in name.split("/"):
+            raise ReadError(f"{self.file}: {self.place}: channel.{channel}.data.file.name is {name!r}, outside the segment")
+        return self.place + name
+
     def multiplier(self, slot: str, unit: str, below: str, per: str) -> float | None:
         """Of the deflection's conversion to `slot` from that `below`, in `unit` per `per`; None where there is none."""
         conversion = f"channel.vDeflection.conversion-set.conversion.{slot}."
-        if f"{conversion}scaling.multiplier" not in self.properties:
+        if f"{conversion}scaling.multiplier" not in self.properties or not self._is_defined(conversion):
             return None
         base = self.properties.get(f"{conversion}base-calibration-slot", below)
         if base != below:
@@ -123,16 +138,38 @@ class Facts:
         scaling = f"channel.vDeflection.conversion-set.conversion.{slot}.scaling."
         return (
             self.number(f"{scaling}offset") * self.factor(scaling, unit)
-            if f"{scaling}offset" in self.properties
+            if f"{scaling}offset" in self.properties and self._is_defined(scaling.removesuffix("scaling."))
             else 0.0
         )
 
 
-def pair_of(line: str) -> tuple[str, str]:
-    """Key and value of a line of properties: between them ``=``, ``:`` or a space, and spaces about it."""
+def pairs_of(text: str) -> Iterator[tuple[str, str]]:
+    """Keys and values of Java properties: between them ``=``, ``:`` or a space, and spaces about it. A backslash at the
+    end of a line goes on with the next."""
+    begun = ""
+    for line in re.split(r"\r\n|\r|\n", text):
+        line = begun + (line.lstrip(" \t\f") if begun else line)
+        begun = ""
+        if (len(line) - len(line.rstrip("\\"))) % 2:
+            begun = line[:-1]
+        elif line and line[0] not in "#!":
+            yield _pair_of(line)
+    if begun:
+        yield _pair_of(begun)
+
+
+def _pair_of(line: str) -> tuple[str, str]:
     match = _LINE.fullmatch(line)
     key, value = (match[1], match[2]) if match else (line, "")
-    return (key.replace("\\", ""), value.replace("\\", "")) if "\\" in line else (key, value)
+    return (_unescaped(key), _unescaped(value)) if "\\" in line else (key, value)
+
+
+def _unescaped(text: str) -> str:
+    def meant(match: re.Match[str]) -> str:
+        code = match[1]
+        return chr(int(code[1:], 16)) if len(code) == 5 else _LETTERS.get(code, code)
+
+    return _ESCAPE.sub(meant, text)
 
 
 def segments_of(names: Iterable[str]) -> dict[str, list[int]]:
@@ -148,7 +185,7 @@ def segments_of(names: Iterable[str]) -> dict[str, list[int]]:
 
 def as_number(text: str) -> float | None:
     try:
-        value = float(text)
+        value = float(text if "_" not in text else "")
     except ValueError:
         return None
     return value if math.isfinite(value) else None
