@@ -175,6 +175,23 @@ def test_a_nanonis_spectrum_over_z(tmp_path: Path, signal: str) -> None:
             curves.read(path)
 
 
+def test_nanonis_columns_count_in_their_units(tmp_path: Path) -> None:
+    """Each with a prefix of its own, the way back, too; a comment that speaks of [DATA] is none."""
+    z = KNOWN.approach_z
+    columns = {"Z rel (\xb5m)": 1e6 * z, "Z (\xc5)": 2e10 * z, "Force (nN)": 1e9 * KNOWN.approach_force,
+               "Force [bwd] (pN)": 1e12 * KNOWN.approach_force}  # fmt: skip
+    path = write_dat(tmp_path / "a.dat", columns)
+    path.write_text(path.read_text().replace("X (m)", "Comment01\tsee [DATA] below\nX (m)"))
+    (curve,) = curves.read(path, spring_constant=K)
+    approach, retract = curve.segments
+    np.testing.assert_allclose(approach.z, 2.0 * z, rtol=1e-8)
+    for segment in (approach.force, retract.force[::-1]):  # type: ignore[index]
+        np.testing.assert_allclose(segment, KNOWN.approach_force, atol=1e-15)  # type: ignore[arg-type]
+    (told,) = (note for note in curve.meta["notes"] if "disagree" in note)
+    assert told.startswith("Z over")
+    assert told.endswith("disagree: Z is taken")
+
+
 def test_a_nanonis_row_that_is_cut_off_is_told(tmp_path: Path) -> None:
     z = np.linspace(1e-6, 0.0, 60)
     path = write_dat(tmp_path / "a.dat", {"Z rel (m)": z, "Current (A)": z, "Force (N)": 1e-3 * z})

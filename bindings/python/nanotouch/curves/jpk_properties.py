@@ -74,7 +74,9 @@ class Facts:
             if not self._is_defined(steps[-1]):
                 raise ReadError(f"{self.file}: {self.place}: {steps[-1]}defined is false: {channel} has no {slot}")
             slot = self.text(f"{steps[-1]}base-calibration-slot")
-        if self.number_type(channel) in FLOATS and not {f"{encoder}multiplier", f"{other}multiplier"} & set(self.properties):
+        if self.number_type(channel) in FLOATS and not {f"{encoder}multiplier", f"{other}multiplier"} & set(
+            self.properties
+        ):
             values = raw.astype(np.float64)
         else:
             values = raw * self.number(f"{encoder}multiplier", f"{other}multiplier")
@@ -116,7 +118,9 @@ class Facts:
         usual = f"channels/{channel}.dat"
         name = self.properties.get(f"channel.{channel}.data.file.name", usual)
         if name.startswith("/") or ".." in name.split("/"):
-            raise ReadError(f"{self.file}: {self.place}: channel.{channel}.data.file.name is {name!r}, outside the segment")
+            raise ReadError(
+                f"{self.file}: {self.place}: channel.{channel}.data.file.name is {name!r}, outside the segment"
+            )
         return self.place + name
 
     def multiplier(self, slot: str, unit: str, below: str, per: str) -> float | None:

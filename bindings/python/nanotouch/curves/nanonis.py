@@ -11,7 +11,7 @@ from __future__ import annotations
 import codecs
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,14 +19,16 @@ from .._arrays import Floats
 from .._io import text
 from .._io.words import counted, printable
 from ..errors import ReadError
+from ..units import UNITS
 from .calibration import Calibration
 from .checks import MAX_POINTS, MIN_POINTS
 from .curve import ForceCurve, Role, Segment
 
 NAME = "nanotouch/nanonis-spectroscopy"
-_DATA = "[DATA]"
+_DATA = re.compile(r"^\[DATA\][ \t]*\r?$", re.MULTILINE)
 _COLUMN = re.compile(r"(?P<name>.*?)(?P<back> \[bwd\])?(?P<other> \[[^\]]*\])* \((?P<unit>[^()]*)\)")
-_Z = ("Z (m)", "Z rel (m)")  # absolute before relative
+_Z = ("Z", "Z rel")  # absolute before relative
+_AGREE = 0.05  # of the travel, by which these two may differ
 
 
 def recognises(file: Path, head: bytes) -> bool:
@@ -36,31 +38,69 @@ def recognises(file: Path, head: bytes) -> bool:
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """The one curve; `calibration` gives what such files do not state."""
-    header, mark, body = file.read_bytes().decode("utf-8-sig", "replace").partition(_DATA)
-    if not mark:
-        raise ReadError(f"{file}: lacks {_DATA}")
+    header, *bodies = _DATA.split(file.read_bytes().decode("utf-8-sig", "replace"), maxsplit=1)
+    if not bodies:
+        raise ReadError(f"{file}: lacks a line [DATA]")
     facts = dict(line.split("\t")[:2] for line in header.splitlines() if "\t" in line)
-    names, every, cut = _table(file, body)
+    names, every, cut = _table(file, bodies[0])
     values, unmeasured = _measured(every)
-    z_name = next((name for name in _Z if name in names and float(np.ptp(values[names.index(name)])) > 0.0), None)
-    signal = _signal(names)
-    if z_name is None or signal is None:
+    columns = [column for name, row in zip(names, values, strict=True) if (column := _column(name, row))]
+    heights = [found for name in _Z for found in columns if found.is_height(name)]
+    signal = _signal(columns)
+    if not heights or signal is None:
         what = facts.get("Experiment", "spectroscopy")
         raise ReadError(
             f"{file}: {what} without a z and a deflection or force in m, N or V; it holds {', '.join(names)}"
         )
-    there, back, unit = signal
+    there, back = signal
     meta: dict[str, Any] = {"format": "Nanonis", "instrument": "Nanonis", "path": file, "enum": 0}
     meta |= {"date": facts.get("Saved Date", "")}
-    factor, notes = _factor(file, unit, calibration, meta)
-    notes += (*unmeasured, *cut)
+    factor, notes = _factor(file, there.unit, calibration, meta)
+    notes += (*unmeasured, *cut, *_disagreement(heights))
     if notes:
         meta["notes"] = notes
-    z, forward = values[names.index(z_name)], values[there]
-    segments = [_segment(z, forward, unit, factor, meta)]
+    z = heights[0].values
+    segments = [_segment(z, there.values, there.unit, factor, meta)]
     if back is not None:
-        segments.append(_segment(z[::-1], values[back][::-1], unit, factor, meta))
+        segments.append(_segment(z[::-1], back.values[::-1], there.unit, factor, meta))
     return [ForceCurve(tuple(segments), meta, printable(file.name))]
+
+
+class _Column(NamedTuple):
+    """A column of the table in SI."""
+
+    name: str
+    unit: str
+    """m, N or V"""
+    back: bool
+    other: bool
+    """of an average or a repetition"""
+    values: Floats
+
+    def is_height(self, name: str) -> bool:
+        plain = not (self.back or self.other) and self.unit == "m"
+        return plain and self.name == name and float(np.ptp(self.values)) > 0.0
+
+
+def _column(name: str, values: Floats) -> _Column | None:
+    """None for a unit that is none of a length, a force or a voltage."""
+    match = _COLUMN.fullmatch(name)
+    stated = match["unit"].strip().replace("\xb5", "u").replace("\u03bc", "u") if match else ""
+    for unit in ("m", "N", "V"):
+        factor = 1e-10 if (unit, stated) in (("m", "\xc5"), ("m", "\u212b")) else UNITS[unit].get(stated)
+        if match and factor is not None:
+            return _Column(match["name"], unit, bool(match["back"]), bool(match["other"]), values * factor)
+    return None
+
+
+def _disagreement(heights: list[_Column]) -> tuple[str, ...]:
+    travels = [float(np.ptp(found.values)) for found in heights]
+    if abs(travels[-1] - travels[0]) <= _AGREE * travels[0]:
+        return ()
+    words = " and ".join(
+        f"{found.name} over {1e9 * travel:.4g} nm" for found, travel in zip(heights, travels, strict=True)
+    )
+    return (f"{words} disagree: {heights[0].name} is taken",)
 
 
 def _table(file: Path, body: str) -> tuple[list[str], Floats, tuple[str, ...]]:
@@ -90,16 +130,13 @@ def _measured(values: Floats) -> tuple[Floats, tuple[str, ...]]:
     return values[:, :last], (f"{counted(left, 'row')} of NaN at the end left out",) if left else ()
 
 
-def _signal(names: list[str]) -> tuple[int, int | None, str] | None:
-    """Columns of the way there and back, and their unit: a force before a deflection in m, that before one in V."""
-    parsed = [(number, match) for number, name in enumerate(names) if (match := _COLUMN.fullmatch(name))]
+def _signal(columns: list[_Column]) -> tuple[_Column, _Column | None] | None:
+    """Columns of the way there and back: a force before a deflection in m, that before one in V."""
     for word, unit in (("force", "N"), ("deflection", "m"), ("deflection", "V")):
-        fits = [(n, m) for n, m in parsed if word in m["name"].casefold() and m["unit"] == unit and not m["other"]]
-        there = next((n for n, m in fits if not m["back"]), None)
+        fits = [one for one in columns if word in one.name.casefold() and one.unit == unit and not one.other]
+        there = next((one for one in fits if not one.back), None)
         if there is not None:
-            name = _COLUMN.fullmatch(names[there])
-            back = next((n for n, m in fits if m["back"] and name and m["name"] == name["name"]), None)
-            return there, back, unit
+            return there, next((one for one in fits if one.back and one.name == there.name), None)
     return None
 
 
