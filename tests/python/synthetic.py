@@ -107,7 +107,13 @@ def write_gwy(
 
 
 def write_ibw(
-    path: Path, wave: Array, labels: list[str], *, pitch: float = 1.0, note: dict[str, object] | None = None
+    path: Path,
+    wave: Array,
+    labels: list[str],
+    *,
+    pitch: float = 1.0,
+    note: dict[str, object] | None = None,
+    unit: str = "m",
 ) -> Path:
     """Igor binary wave, version 5 (Igor's technical note 3): `wave` with the channels on the last axis, named `labels`.
 
@@ -124,7 +130,7 @@ def write_ibw(
     units = [metre if axis < channel_axis else b"\0" * 4 for axis in range(4)]
     wave_header = struct.pack("<4xIIihhxxxxxxh32sii", 0, 0, wave.size, 4, 0, 1, b"wave0".ljust(32, b"\0"), 0, 0)
     wave_header += struct.pack("<4i4d4d", *dims, *steps, *[0.0] * 4)
-    wave_header += metre + b"".join(units)
+    wave_header += unit.encode("latin-1").ljust(4, b"\0") + b"".join(units)
     wave_header = wave_header.ljust(320, b"\0")
 
     def file_header(checksum: int) -> bytes:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -138,6 +139,15 @@ def test_a_damaged_file_is_refused_in_one_sentence(tmp_path: Path, old: bytes, n
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("sign", [0.0, -1.0])
+def test_a_scale_that_turns_or_hides_the_force_is_refused(tmp_path: Path, sign: float) -> None:
+    path = ramp(tmp_path / "ramp.000")
+    (scale,) = re.findall(r"DeflSens\] \(([0-9.]+) V/LSB", path.read_bytes().decode("latin-1"))
+    other = f"{sign * float(scale):.16f}"
+    with pytest.raises(ReadError, match=r"'Z scale' of .* V/LSB .*expected above 0|lacks ':Z scale' with a scale"):
+        curves.read(rewritten(path, (f"DeflSens] ({scale}", f"DeflSens] ({other}")))
+
+
 def test_without_a_spring_constant_it_has_deflections_and_says_so(tmp_path: Path) -> None:
     path = ramp(tmp_path / "ramp.000", spring_constant=0.5)
     (whole,) = curves.read(path)
@@ -207,6 +217,7 @@ def test_samples_that_were_never_taken_are_no_data(filler: int, tmp_path: Path) 
     )
     (curve,) = curves.read(path)
     assert [len(s) for s in curve.segments] == [N - 40, N - 3]
+    assert curve.meta["notes"] == ("43 samples that were never taken (0 or the lowest integer) left out",)
     for segment in curve.segments:
         assert segment.deflection is not None
         assert segment.deflection.min() > 0.7 * SENSITIVITY  # else a snap-in of 3 nN that nobody measured

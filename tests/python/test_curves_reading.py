@@ -118,6 +118,45 @@ def test_calibration_is_corrected_consistently(tmp_path: Path) -> None:
     np.testing.assert_allclose(asylum.retract.force[-50:], KNOWN.retract_force[-50:] / 2, rtol=1e-12)
 
 
+def asylum(path: Path, change: tuple[bytes, bytes] = (b"", b"")) -> Path:
+    """An Asylum curve with other bytes of the same length; igor2 does not look at the checksum of the note."""
+    content = synthetic.write_ibw_curve(path, KNOWN).read_bytes()
+    assert change[0] in content
+    path.write_bytes(content.replace(*change, 1))
+    return path
+
+
+def test_the_note_of_a_wave_is_read_as_it_is_written(tmp_path: Path) -> None:
+    stiffness = f"SpringConstant: {KNOWN.spring_constant}\r".encode()
+    (curve,) = curves.read(asylum(tmp_path / "a.ibw", (stiffness, stiffness.replace(b": ", b":") + b"\n")))
+    assert curve.spring_constant == KNOWN.spring_constant
+    (curve,) = curves.read(
+        asylum(tmp_path / "b.ibw", (stiffness, b"SpringConstant: x" + b" " * (len(stiffness) - 18) + b"\r"))
+    )
+    assert "the spring constant 'x' is no number in N/m: give it for forces" in curve.meta["notes"]
+    second = b"Version: 1\rDate: 2020-02-01\r"
+    (curve,) = curves.read(
+        asylum(tmp_path / "c.ibw", (second, b"SpringConstant: 0.123456".ljust(len(second) - 1) + b"\r"))
+    )
+    (told,) = (note for note in curve.meta["notes"] if "spring constant" in note)
+    assert told == f"states its spring constant as {KNOWN.spring_constant} and as 0.123456: the first is taken"
+
+
+def test_a_wave_of_no_lengths_or_with_an_empty_end(tmp_path: Path) -> None:
+    z = np.concatenate([KNOWN.approach_z, KNOWN.retract_z])
+    bent = np.concatenate([KNOWN.approach_force, KNOWN.retract_force]) / KNOWN.spring_constant
+    labels, note = ["Raw", "Defl", "ZSnsr"], {"ImagingMode": "Contact", "SpringConstant": KNOWN.spring_constant}
+    wave = np.stack([-z, bent, -z], axis=-1)
+    wave[-7:] = 0.0
+    (curve,) = curves.read(synthetic.write_ibw(tmp_path / "a.ibw", wave, labels, note=note))
+    assert "7 samples of 0 in z and deflection at the end, never taken, left out" in curve.meta["notes"]
+    assert len(curve.retract) == KNOWN.retract_z.size - 7
+    (again,) = curves.read(synthetic.write_ibw(tmp_path / "b.ibw", 1e9 * wave, labels, note=note, unit="nm"))
+    np.testing.assert_allclose(again.retract.z, curve.retract.z, rtol=1e-9)
+    with pytest.raises(ReadError, match="its data are in 'V', expected a length in m"):
+        curves.read(synthetic.write_ibw(tmp_path / "c.ibw", wave, labels, note=note, unit="V"))
+
+
 def test_an_uncalibrated_file_asks_for_what_it_needs(tmp_path: Path) -> None:
     path = jpk(tmp_path / "raw.jpk-force", spring_constant=None, sensitivity=6e-8)
     with pytest.raises(ReadError, match="states no spring constant; give it"):

@@ -24,6 +24,7 @@ from .._io.files import checked_path, refuse_traps
 from .._io.readers import head_of
 from .._io.words import counted, printable
 from ..errors import ReadError, require
+from ..units import UNITS
 from .calibration import Calibration
 from .checks import MAX_POINTS, MIN_POINTS
 from .curve import ForceCurve, Role, Segment
@@ -53,7 +54,7 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
         _refuse(file, note, columns)
     assert deflection_name is not None
     assert height is not None
-    values = np.asarray(wave["wData"], np.float64)
+    values = np.asarray(wave["wData"], np.float64) * unit_of(wave, file)
     if not MIN_POINTS <= len(values) <= MAX_POINTS:
         raise ReadError(f"{file}: a wave of {len(values)} points, expected at least {MIN_POINTS}")
     deflection, z = values[:, columns.index(deflection_name)], -values[:, columns.index(height[0])]
@@ -93,7 +94,19 @@ def wave_of(file: Path) -> tuple[Any, str]:
     checked_path(file)
     refuse_traps(file, head_of(file))
     wave = require("igor2.binarywave", "curves").load(str(file))["wave"]
+    if np.iscomplexobj(wave["wData"]):
+        raise ReadError(f"{file}: a wave of complex numbers, expected real ones")
     return wave, bytes(wave["note"]).decode("latin-1").replace("\r", "\n")
+
+
+def unit_of(wave: Any, file: Path) -> float:
+    """What one of the wave's data is in metres, which are meant where it states no unit."""
+    header = wave["wave_header"]
+    unit = bytes(np.asarray(header.get("dataUnits", b"")).tobytes()).partition(b"\0")[0]
+    name = unit.decode("latin-1").strip().replace("\xb5", "u").replace("\xc2", "") or "m"
+    if name not in UNITS["m"]:
+        raise ReadError(f"{file}: its data are in {name!r}, expected a length in m")
+    return UNITS["m"][name]
 
 
 def _labels(wave: Any, file: Path) -> list[str]:
@@ -143,9 +156,12 @@ def segments_of(
 ) -> tuple[tuple[Segment, ...], tuple[str, ...]]:
     """The movements, and what was left out or is missing."""
     known = np.isfinite(z) & np.isfinite(deflection)
-    notes = [] if stiffness is not None else ["states no spring constant: deflections alone; give it for forces"]
+    notes = _of_stiffness(note, stiffness)
     if not known.all():
         notes.append(f"{counted(int(np.count_nonzero(~known)), 'sample')} without a number left out")
+    if empty := _empty_end(z, deflection):
+        known[-empty:] = False
+        notes.append(f"{counted(empty, 'sample')} of 0 in z and deflection at the end, never taken, left out")
     segments = []
     travel = float(np.ptp(z[known])) if known.any() else 0.0
     for part, direction in _parts(note, z, known, notes):
@@ -155,6 +171,23 @@ def segments_of(
         force = None if stiffness is None else bent * stiffness
         segments.append(Segment(_role(way, travel, direction), time, way, channel, force, bent))
     return tuple(segments), tuple(notes)
+
+
+def _of_stiffness(note: str, stiffness: float | None) -> list[str]:
+    """What has to be told of the spring constant."""
+    words = list(dict.fromkeys(re.findall(r"(?m)^SpringConstant:[ \t]*(.*?)[ \t]*$", note)))
+    if len(words) > 1:
+        return [f"states its spring constant as {' and as '.join(words)}: the first is taken"]
+    if words and words[0] and stated(note, "SpringConstant") is None:
+        return [f"the spring constant {words[0]!r} is no number in N/m" + ("" if stiffness else ": give it for forces")]
+    return [] if stiffness is not None else ["states no spring constant: deflections alone; give it for forces"]
+
+
+def _empty_end(z: Floats, deflection: Floats) -> int:
+    """Samples at the end where both are exactly 0; two or fewer may be measured."""
+    taken = np.flatnonzero((z != 0.0) | (deflection != 0.0))
+    count = z.size - (int(taken[-1]) + 1 if taken.size else 0)
+    return count if 2 < count < z.size else 0
 
 
 def _parts(note: str, z: Floats, known: NDArray[np.bool_], notes: list[str]) -> list[tuple[slice, int | None]]:

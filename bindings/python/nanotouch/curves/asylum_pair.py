@@ -17,7 +17,7 @@ import numpy as np
 from .._arrays import Floats
 from .._io.words import printable
 from ..errors import ReadError
-from .asylum import HEIGHTS, segments_of, stated, wave_of
+from .asylum import HEIGHTS, segments_of, stated, unit_of, wave_of
 from .calibration import Calibration
 from .checks import MAX_POINTS, MIN_POINTS
 from .curve import ForceCurve
@@ -99,7 +99,7 @@ def _beside(file: Path, stem: str) -> Path | None:
 def _values(file: Path) -> tuple[Floats, str]:
     """Values [m] and note of a one-dimensional wave."""
     wave, note = wave_of(file)
-    values = np.asarray(wave["wData"], np.float64)
+    values = np.asarray(wave["wData"], np.float64) * unit_of(wave, file)
     if values.ndim != 1 or not MIN_POINTS <= values.size <= MAX_POINTS:
         raise ReadError(f"{file}: a wave of shape {values.shape}, expected one of at least {MIN_POINTS} points")
     return values, note

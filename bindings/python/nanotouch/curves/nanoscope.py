@@ -55,13 +55,15 @@ def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]
     near, far = _points(found, image)
     raw = _raw(found, image, near, far)
     known, raw = _in_time(~_fillers(raw, near), near), _in_time(raw, near)
-    deflection = raw * (image.must_be_scaled(":Z scale")[1] * meta["sensitivity"])
+    deflection = raw * (_volts(image) * meta["sensitivity"])
     if _is_capture(found):
         first, way = _period(found, deflection)
         deflection, known = np.roll(deflection, -first, axis=1), np.roll(known, -first, axis=1)
     else:
         way = _ramp(found, image, near, far) or _sensor(found, near, far)
     enough = [int(n) for n in np.flatnonzero(_enough(known, way.near))]
+    if never := int(np.count_nonzero(~known[enough])):
+        notes += (f"{counted(never, 'sample')} that were never taken (0 or the lowest integer) left out",)
     if len(enough) < len(raw):
         notes += (f"{counted(len(raw) - len(enough), 'curve')} of {len(raw)} without data left out",)
     if len(raw) > 1 and not _is_capture(found):
@@ -102,6 +104,14 @@ def _deflection_image(file: Path, found: list[Section]) -> Section:
         if any(f"[{kind}]" in image.channel for kind in _DEFLECTION):
             return image
     raise ReadError(f"{file}: no deflection among its channels ({', '.join(one.channel for one in listed)})")
+
+
+def _volts(image: Section) -> float:
+    """Of one digit of the deflection [V]."""
+    name, volts, _ = image.must_be_scaled(":Z scale")
+    if not volts > 0.0:
+        raise ReadError(f"{image.file}: 'Z scale' of {image.channel!r} is {volts:g} V/LSB ({name}), expected above 0")
+    return volts
 
 
 def _meta(found: list[Section], image: Section, given: Calibration) -> tuple[dict[str, Any], tuple[str, ...]]:
