@@ -147,6 +147,32 @@ def test_a_chiaro_file_says_its_setpoint_in_newtons(tmp_path: Path) -> None:
     assert curve.approach.force.max() == pytest.approx(curve.meta["setpoint"], rel=0.05)
 
 
+def write_chiaro(path: Path, load: str = "Load (uN)") -> Path:
+    """Base, bend and indentation in the columns that Optics11's export has, forces in uN, lengths in nm."""
+    z = np.concatenate([KNOWN.approach_z, KNOWN.retract_z])
+    force = np.concatenate([KNOWN.approach_force, KNOWN.retract_force])
+    head = ["Date\t12/05/2025\tTime\t11:20:38\tStatus\tOK", "Piezo position (nm) (Measured)\t-10.3", "k (N/m)\t0.019",
+            "Tip radius (um)\t27.500", "", "Device:\tChiaro", "Software version: V3.5.0", "", "Max load (\xb5N)\t0.050",
+            "Piezo speed  (\xb5m/s)\t7.000", "",
+            f"Time (s)\t{load}\tIndentation (nm)\tCantilever (nm)\tPiezo (nm)\tAuxiliary"]  # fmt: skip
+    rows = [f"{1e-3 * n:.6f}\t{1e6 * F:.9f}\t{1e9 * abs(h) / 7:.6f}\t{1e9 * F / 0.019:.6f}\t{-1e9 * h:.6f}\t0"
+            for n, (h, F) in enumerate(zip(z, force, strict=True))]  # fmt: skip
+    path.write_bytes("\n".join([*head, *rows]).encode("latin-1") + b"\n")
+    return path
+
+
+def test_z_of_a_chiaro_file_is_its_piezo(tmp_path: Path) -> None:
+    """Not the indentation that it computed: a fit subtracts the deflection itself."""
+    pytest.importorskip("afmformats")
+    (curve,) = curves.read(write_chiaro(tmp_path / "a.txt"))
+    z = np.concatenate([KNOWN.approach_z, KNOWN.retract_z])
+    force = np.concatenate([KNOWN.approach_force, KNOWN.retract_force])
+    np.testing.assert_allclose(np.concatenate([s.z for s in curve.segments]), z, atol=1e-14)
+    np.testing.assert_allclose(np.concatenate([s.force for s in curve.segments]), force, atol=1e-14)  # type: ignore[misc]
+    with pytest.raises(ReadError, match=r"a column 'Load \(nN\)' of a Chiaro file, expected 'Load \(uN\)'"):
+        curves.read(write_chiaro(tmp_path / "b.txt", "Load (nN)"))
+
+
 def write_dat(path: Path, columns: dict[str, np.ndarray], experiment: str = "Z spectroscopy") -> Path:
     rows = ["\t".join(f"{value:.9E}" for value in row) for row in zip(*columns.values(), strict=True)]
     header = [f"Experiment\t{experiment}\t", "Saved Date\t20.04.2023 14:55:09\t", "X (m)\t153.514E-9\t", "", "[DATA]"]

@@ -30,6 +30,7 @@ from .curve import ForceCurve, Role, Segment
 NAME = "afmformats"
 _HEADER_LINES = 100  # of a Chiaro file, at most
 PAUSE_TRAVEL = 0.1  # a segment over which the base moves less than this, of the whole travel, is a pause
+_CHIARO = ("Time (s)", "Load (uN)", "Indentation (nm)", "Cantilever (nm)", "Piezo (nm)")
 _SPELLINGS = {".hdf5": ".h5"}
 _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a voltage times a constant
 
@@ -82,9 +83,11 @@ def _other(file: Path) -> str:
 
 def _converted(data: Any, file: Path, number: int) -> ForceCurve:
     meta = dict(data.metadata.items()) | {"enum": number}  # counted from 0
+    channels = _Z_CHANNELS
     if str(meta.get("format", "")).startswith("Optics11"):
-        meta = _in_si(meta) | _tip(file)
-    z_channel = next((c for c in _Z_CHANNELS if c in data.columns), None)
+        _check_chiaro(file)
+        meta, channels = _in_si(meta) | _tip(file), _Z_CHANNELS[1:]  # what afmformats calls measured is the indentation
+    z_channel = next((c for c in channels if c in data.columns), None)
     if z_channel is None or "force" not in data.columns:
         raise ReadError(f"{file}: curve {data.enum} lacks a height or a force; it has {', '.join(data.columns)}")
     z, force = np.asarray(data[z_channel], np.float64), np.asarray(data["force"], np.float64)
@@ -100,6 +103,16 @@ def _in_si(meta: dict[str, Any]) -> dict[str, Any]:
     """Chiaro states µN and µm/s, which afmformats hands on as they are."""
     micro = ("setpoint", "speed approach", "speed retract")
     return meta | {key: 1e-6 * meta[key] for key in micro if isinstance(meta.get(key), float)}
+
+
+def _check_chiaro(file: Path) -> None:
+    """afmformats takes the columns by their order, whatever their names and units."""
+    with file.open(encoding="latin-1") as lines:
+        head = next((line for line in islice(lines, _HEADER_LINES) if line.startswith("Time (s)\tLoad")), "")
+    stated = tuple(name.strip() for name in head.split("\t"))[: len(_CHIARO)]
+    for name, expected in zip(stated, _CHIARO, strict=False):
+        if name.replace("\xb5", "u") != expected:
+            raise ReadError(f"{file}: a column {name!r} of a Chiaro file, expected {expected!r}")
 
 
 def _tip(file: Path) -> dict[str, float]:
