@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What happens on one branch: snap-in or pull-off, the tearing-off, the work of adhesion, the slope in contact. */
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 
@@ -128,7 +129,9 @@ static nt_curve_measured contact_slope(const nt_curve_branch *branch)
         spread += firm * x * x;
         product += firm * x * (branch->force[i] - mean);
     }
-    const double slope = product / spread;
+    const double slope = product / spread, rounding = 8.0 * DBL_EPSILON * z_mean;
+    if (!(spread > count * rounding * rounding) || !isfinite(slope)) /* the base did not move in contact */
+        return (nt_curve_measured){NAN, NAN};
     for (long i = 0; i < end; i++) {
         const double rest = branch->force[i] - mean - slope * (branch->z[i] - z_mean);
         squares += branch->force[i] > least ? rest * rest : 0.0;
