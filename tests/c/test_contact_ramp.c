@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "larger.h"
 #include "maugis_fixture.h"
 #include "nanotouch/advanced/contact_equilibrium.h"
 
@@ -49,9 +50,9 @@ static double branch_error(const nt_contact_law *law, double spring, double dept
             continue;
         }
         assert_true(stage[i] - force[i] / spring >= jump.last.indentation - 1e-7 * (1.0 + 1.0 / spring));
-        most = fmax(most, fabs(force[i]));
+        most = larger(most, fabs(force[i]));
         if (stage[i] - end > 1e-4 * (depth - end) || branch == NT_BRANCH_APPROACH)
-            error = fmax(error, force_error(law, spring, stage[i], force[i]));
+            error = larger(error, force_error(law, spring, stage[i], force[i]));
     }
     return error / most;
 }
@@ -72,7 +73,7 @@ static void every_force_is_an_equilibrium(void **state)
                         if (error > 1e-9)
                             print_message("%d lambda %g spring %g depth %g back %d: %g\n", models[m], lambda, spring,
                                           depth, back, error);
-                        worst = fmax(worst, error);
+                        worst = larger(worst, error);
                     }
                 }
     assert_true(worst < 1e-9);
