@@ -196,6 +196,14 @@ def test_a_choice_that_is_not_offered_is_refused(tmp_path: Path) -> None:
     for number in (-1, 4, 7):
         host.answer({"do": "choose", "number": number})
         assert newest(told, "refused")["why"] == f"choice {number + 1}: valid is 1 .. 4"
+    for number in (float("nan"), float("inf"), 1e300):
+        told.clear()
+        host.answer({"do": "choose", "number": number})
+        assert ": valid is 1 .. 4" in newest(told, "refused")["why"]
+    for seed in (-1, float("nan"), 1e17):
+        told.clear()
+        host.answer({"do": "task", "name": "stiffer", "seed": seed})
+        assert ": valid is 0 .. 9" in newest(told, "refused")["why"]
     host.close()
 
 
