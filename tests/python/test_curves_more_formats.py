@@ -173,6 +173,14 @@ def test_z_of_a_chiaro_file_is_its_piezo(tmp_path: Path) -> None:
         curves.read(write_chiaro(tmp_path / "b.txt", "Load (nN)"))
 
 
+def test_a_last_line_that_is_cut_off_is_no_other_number(tmp_path: Path) -> None:
+    pytest.importorskip("afmformats")
+    path = write_chiaro(tmp_path / "a.txt")
+    path.write_bytes(path.read_bytes().replace(b"\t0\n", b"\t0.125\n")[:-3])
+    with pytest.raises(ReadError, match="its last line is cut off: "):
+        curves.read(path)
+
+
 def write_dat(path: Path, columns: dict[str, np.ndarray], experiment: str = "Z spectroscopy") -> Path:
     rows = ["\t".join(f"{value:.9E}" for value in row) for row in zip(*columns.values(), strict=True)]
     header = [f"Experiment\t{experiment}\t", "Saved Date\t20.04.2023 14:55:09\t", "X (m)\t153.514E-9\t", "", "[DATA]"]

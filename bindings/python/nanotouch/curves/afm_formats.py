@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._io import text
 from .._io.readers import head_of
 from .._io.words import printable
 from ..errors import ReadError, require
@@ -31,6 +32,8 @@ NAME = "afmformats"
 _HEADER_LINES = 100  # of a Chiaro file, at most
 PAUSE_TRAVEL = 0.1  # a segment over which the base moves less than this, of the whole travel, is a pause
 _CHIARO = ("Time (s)", "Load (uN)", "Indentation (nm)", "Cantilever (nm)", "Piezo (nm)")
+_ROWS = {".csv": ",", ".tab": "\t", ".txt": "\t"}  # what stands between the numbers of a line
+_END = 4096  # of a file of rows, to see whether it is whole [byte]
 _SPELLINGS = {".hdf5": ".h5"}
 _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a voltage times a constant
 
@@ -44,8 +47,19 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     ending = _SPELLINGS.get(file.suffix.lower(), file.suffix.lower())
     if ending not in known:
         raise ReadError(f"{file}: not a force curve file that afmformats reads ({', '.join(known)}){_other(file)}")
+    if ending in _ROWS:
+        _refuse_cut(file, _ROWS[ending])
     with _under(file, ending) as link:
         return [_converted(data, file, number) for number, data in enumerate(_loaded(file, link, calibration))]
+
+
+def _refuse_cut(file: Path, separator: str) -> None:
+    """A last line that lacks digits is read by afmformats as another number."""
+    with file.open("rb") as stream:
+        stream.seek(max(0, file.stat().st_size - _END))
+        rows = stream.read().decode("latin-1").replace(separator, ";")
+    if text.ends_cut(rows):
+        raise ReadError(f"{file}: its last line is cut off: {rows.splitlines()[-1].replace(';', separator)!r}")
 
 
 @contextmanager
