@@ -97,7 +97,7 @@ def _other(file: Path) -> str:
 
 def _converted(data: Any, file: Path, number: int) -> ForceCurve:
     meta = dict(data.metadata.items()) | {"enum": number}  # counted from 0
-    channels = _Z_CHANNELS
+    channels: tuple[str, ...] = _Z_CHANNELS
     if str(meta.get("format", "")).startswith("Optics11"):
         _check_chiaro(file)
         meta, channels = _in_si(meta) | _tip(file), _Z_CHANNELS[1:]  # what afmformats calls measured is the indentation
