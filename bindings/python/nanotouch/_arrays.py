@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -14,9 +15,15 @@ from nanotouch.errors import InvalidValue
 Floats = NDArray[np.float64]
 
 
+def is_masked(values: Any) -> bool:
+    """Whether it is a masked array of numpy's; their module takes as long to load as a header to read."""
+    masked = sys.modules.get("numpy.ma")  # not there yet: nobody has made one
+    return masked is not None and isinstance(values, masked.MaskedArray)
+
+
 def refuse_dressed(values: Any, name: str) -> None:
     """Refuse what numpy would strip in silence: a mask, a unit."""
-    if isinstance(values, np.ma.MaskedArray):
+    if is_masked(values):
         raise TypeError(f"{name} is a masked array; fill or compress it first")
     if isinstance(values, np.matrix):
         raise TypeError(f"{name} is a numpy.matrix; pass numpy.asarray of it")

@@ -26,9 +26,10 @@ from .errors import Error
 
 _FOR_IMAGES = ("cv2", "h5py", "scipy.io", "tifffile", "igor2.binarywave", "SurfaceTopography.IO")
 _OWN = (".gsf", ".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series", ".mcap", ".part", ".nc", ".topostats")
-_NUMPY: tuple[str, ...] = ("numpy.ma",)
-_NEEDED = dict.fromkeys((".spm", ".di", ".000", ".001", ".002", ".003", ".sxm", ".stp", ".top"), _NUMPY)
-_NEEDED[".ibw"] = (*_NUMPY, "igor2.binarywave")
+_NEEDED: dict[str, tuple[str, ...]] = dict.fromkeys(
+    (".spm", ".di", ".000", ".001", ".002", ".003", ".sxm", ".stp", ".top", ".tiff"), ()
+)
+_NEEDED[".ibw"] = ("igor2.binarywave",)
 """what our own readers of formats need whose names others use too; what else is wanted is imported by the child"""
 _SPAN = 1 << 16  # of a request [byte]
 _BESIDE = 64  # files of the same stem
@@ -66,7 +67,7 @@ def serve(control: socket.socket) -> None:
     warnings.simplefilter("ignore")  # nobody would see them
     gc.disable()  # nothing that was inherited is closed behind our back
     os.environ["HDF5_PLUGIN_PRELOAD"] = "::"  # no filters from elsewhere
-    mimetypes.init()  # from /etc, which a confined child may not read; readers of others import it
+    mimetypes.init([])  # which by itself reads what a confined child may not read; readers of others import it
     confine.prepare()
     control.sendall(b"ready\n")
     while True:
@@ -91,13 +92,13 @@ def _prepare(job: str, file: Path) -> None:
     with suppress(Exception):  # what cannot be loaded is named when it is wanted
         _reader(job)
         _registered()
-    wanted: tuple[str, ...] = ("numpy.ma",)
+    wanted: tuple[str, ...] = ()
     if job == "record.read":
         wanted = ("mcap.stream_reader", "zstandard")
     elif job == "maps.read":
         wanted = ("xarray", "h5netcdf")
     elif ending in _NEEDED:
-        wanted = _NUMPY if job.startswith("images.") else _NEEDED[ending]
+        wanted = () if job.startswith("images.") else _NEEDED[ending]
     elif ending not in _OWN:
         wanted = _FOR_IMAGES if job.startswith("images.") else ("h5py", "afmformats")
     for name in wanted:

@@ -86,7 +86,7 @@ FORMATS: tuple[Format, ...] = (
     _reads("Nanonis", ".sxm", "images", _OWN, f"{_REAL}, {_MADE}"),
     _reads("TopoStats", ".topostats", "images", _OWN, _MADE),
     _reads("Gwyddion Simple Field", ".gsf", "images", _OWN, _MADE),
-    _reads("Park Systems", ".tiff", "images", _ST, _REAL),
+    _reads("Park Systems", ".tiff", "images", _OWN, f"{_REAL}, {_MADE}"),
     _reads("Nanosurf easyScan", ".nid", "images", _ST, f"{_REAL}, {_MADE}"),
     _reads("NT-MDT", ".mdt", "images", f"{_ST}; arrays of later versions: {_OWN}", f"{_REAL}, {_MADE}"),
     _reads("Agilent/Keysight PicoView", ".mi", "images", _ST, _REAL),

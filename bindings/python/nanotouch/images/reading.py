@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -17,11 +18,24 @@ from .._io.files import checked_path, guarded, refuse_traps
 from .._io.readers import head_of, registered_for
 from .._io.words import printable
 from ..errors import InvalidValue, ReadError
-from ..formats import refusal
-from . import asylum, gsf, hdf5, jpk_movie, nanonis, nanoscope, ntmdt, surfacetopography, topostats, wsxm
+from ..formats import HDF5, refusal
 from .channel import Channel, Plane
 from .checks import LENGTHS, check_scale, check_shape, filled, unusual
 from .topography import Topography
+
+#: our readers, asked in this order where a file begins with one of these; loaded then, as to list a file needs one
+READERS: tuple[tuple[str, tuple[bytes, ...]], ...] = (
+    ("hdf5", (HDF5,)),
+    ("jpk_movie", (HDF5,)),
+    ("topostats", (HDF5,)),
+    ("nanonis", (b":NANONIS_VERSION:",)),
+    ("gsf", (b"Gwyddion Simple Field",)),
+    ("ntmdt", (b"\x01\xb0\x93\xff",)),
+    ("nanoscope", (b"\\*", b"?*")),
+    ("wsxm", (b"WSxM file copyright",)),
+    ("asylum", (b"\5\0", b"\0\5")),
+    ("park", (b"II*\0",)),
+)
 
 
 def channels(path: str | PathLike[str], *, untrusted: bool | None = None) -> list[Channel]:
@@ -114,12 +128,20 @@ def reader_of(file: Path) -> tuple[str, Any]:
     refused = refusal(file, head, "images")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")
-    for own in (hdf5, jpk_movie, topostats, nanonis, gsf, ntmdt, nanoscope, wsxm, asylum):
+    for module, marks in READERS:
+        if not head.startswith(marks):
+            continue
+        own = _loaded(module)
         with guarded(file, own.NAME):
             recognised = own.recognises(file, head)
         if recognised:
             return own.NAME, own
-    return surfacetopography.NAME, surfacetopography
+    others = _loaded("surfacetopography")
+    return others.NAME, others
+
+
+def _loaded(module: str) -> Any:
+    return importlib.import_module(f"{__package__}.{module}")
 
 
 def _checked(plane: Plane, file: Path, given_pixel: tuple[float, float] | None, z_unit: str | None) -> Topography:

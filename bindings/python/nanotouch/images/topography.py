@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import as_floats, as_mask
+from .._arrays import as_floats, as_mask, is_masked
 from ..errors import InvalidValue
 from .words import length, lengths
 
@@ -93,7 +93,7 @@ class Topography:
 
 def _frozen(array: ArrayLike, dtype: type[np.generic]) -> NDArray[np.generic]:
     """A read-only C-ordered view (or copy, where the layout or type differs); the caller's own array stays writable."""
-    if isinstance(array, np.ma.MaskedArray):
+    if is_masked(array):
         raise InvalidValue("masked arrays are not accepted: fill them and pass `mask`")
     checked = as_mask(array, "the mask") if dtype is np.bool_ else as_floats(array, "the image")
     view = np.ascontiguousarray(checked, dtype=dtype).view()
