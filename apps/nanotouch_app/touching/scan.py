@@ -116,7 +116,7 @@ def _on_rig(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], s
         try:
             image, signals = scan_rig.taken(session, settings)
         except nt.raster.Ended as ended:
-            raise DeviceError(f"{ended}; {_kept(args, ended.image, settings, scene, out, slides)}") from ended
+            raise DeviceError(f"{ended}; {_kept(args, ended.image, settings, scene, out)}") from ended
         _keep(args, image, settings, signals, scene, out, slides)
     return 0
 
@@ -129,18 +129,16 @@ def _keep(
     if not signals:
         _write(args, image, settings, scene, out, slides)
         return
-    raise stop.Stopped(signals[0], _kept(args, image, settings, scene, out, slides))
+    raise stop.Stopped(signals[0], _kept(args, image, settings, scene, out))
 
 
-def _kept(
-    args: argparse.Namespace, image: scan.Image, settings: nt.Scan, scene: nt.Scene, out: Path, slides: bool
-) -> str:
-    """Write the lines of a scan that has ended early, and say how many there are."""
+def _kept(args: argparse.Namespace, image: scan.Image, settings: nt.Scan, scene: nt.Scene, out: Path) -> str:
+    """Write the lines of a scan that has ended early, without their picture, and say how many there are."""
     lines, wanted = len(image.trace.height), int(settings["raster.lines"])
     if lines < LEAST:
         return f"{lines} of {wanted} lines were scanned, an image has at least {LEAST}: nothing is kept"
-    _write(args, image, settings, scene, out, slides)
-    return f"{lines} of {wanted} lines are kept"
+    _write_data(args, image, settings, scene, out, args.answer | _facts(image))
+    return f"{lines} of {wanted} lines are kept in {out}: nanotouch touch {out}/surface.gwy"
 
 
 def _accuracy(steady: str | None, scanner: nt.Scanner) -> float | None:
@@ -160,15 +158,7 @@ def _write(
     """Files, picture and what there is to say."""
     facts = args.answer | _facts(image)
     with stop.asked() as signals, output.busy("undoing the tip"):
-        tip = images.RoundedCone(scene.tip.radius, scene.tip.half_angle)
-        image.write(out / "scan.gwy", tip)
-        surface, reports = image.without_tip(tip), []
-        if scan_rig.is_named(args) or any(settings[f"raster.{name}"] for name in ("tilt_x", "tilt_y", "drift")):
-            surface, told = images.prepare(surface)
-            reports = [f"surface.gwy: {report if args.verbose else output.in_short(report)}\n" for report in told]
-        images.write(out / "surface.gwy", replace(surface, channel=images.READY))
-        output.write_json(out / "scan.json", facts)
-    print("".join(reports), end="")
+        _write_data(args, image, settings, scene, out, facts)
     if signals:
         raise stop.Stopped(signals[0], f"all but the picture is in {out}")
     try:
@@ -185,6 +175,21 @@ def _write(
     if slides and image.mode == "contact":
         output.say(f"friction: {facts['friction'] * 1e9:.3g} nN, half the mean difference of the lateral forces")
     print(f"written to {out}/: {', '.join(written)}\ngo on: nanotouch touch {out}/surface.gwy")
+
+
+def _write_data(
+    args: argparse.Namespace, image: scan.Image, settings: nt.Scan, scene: nt.Scene, out: Path, facts: dict[str, Any]
+) -> None:  # fmt: skip
+    """What was measured, and the surface without the tip."""
+    tip = images.RoundedCone(scene.tip.radius, scene.tip.half_angle)
+    image.write(out / "scan.gwy", tip)
+    surface, reports = image.without_tip(tip), []
+    if scan_rig.is_named(args) or any(settings[f"raster.{name}"] for name in ("tilt_x", "tilt_y", "drift")):
+        surface, told = images.prepare(surface)
+        reports = [f"surface.gwy: {report if args.verbose else output.in_short(report)}\n" for report in told]
+    images.write(out / "surface.gwy", replace(surface, channel=images.READY))
+    output.write_json(out / "scan.json", facts)
+    print("".join(reports), end="")
 
 
 def _force(peak: float | None) -> str:
