@@ -281,6 +281,7 @@ set(nanotouch_sources_host
     host/task_force.c
     host/task_push.c
     host/task_push_solve.c
+    host/task_slower.c
     host/task_stiffer.c
     host/task_trace.c
     host/tasks.c

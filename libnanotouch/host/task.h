@@ -15,6 +15,7 @@ typedef struct nt_task {
     const char *hides;   /* what a view does not show, as "law|contact": surface, law, contact, sliders */
     const char *choices; /* that can be made now, as "a|b"; "": none */
     const char *words;   /* what to do */
+    const char *trials;  /* of its result, the columns of a trial; NULL: it has none */
     nt_status (*begin)(nt_session_host *host);                   /* NULL: nothing; what it refuses is in words */
     void (*judge)(nt_session_host *host, const nt_frame *frame); /* each frame; NULL: nothing */
     void (*take)(nt_session_host *host);                         /* what lies there has changed; NULL: nothing */
@@ -46,7 +47,7 @@ double nt_staircase_threshold(const nt_staircase *stairs);
 
 typedef struct nt_trial {
     double ratio;
-    char stiffer, answer;
+    char wanted, answer;
 } nt_trial;
 enum { NT_TRIALS = 256, NT_PULLS = 16, NT_TRACE = 4096, NT_MEASURES = 12, NT_TRACE_PARTS = 60, NT_EVENTS_TOLD = 8 };
 
@@ -80,7 +81,7 @@ typedef struct nt_trainer {
     int pull_count;
     double good, all, squares, left, right; /* of a steady force */
     double modulus;                         /* [Pa] */
-    char stiff, shown;
+    char wanted, shown;                     /* of two samples: which one it is, which one lies there */
     nt_staircase stairs;
     unsigned char touched[NT_TRACE_PARTS];                  /* parts of the width */
     int predicted;                                          /* of a page; -1: not yet */
@@ -120,7 +121,7 @@ void nt_operator_hold(nt_operator *op, double force, double way);
 void nt_operator_ask(nt_operator *op, const char *what, double x, double y, double z);
 int nt_operator_goes_on(const nt_operator *op); /* neither solved nor given up */
 
-extern const nt_task nt_task_find, nt_task_pull_off, nt_task_trace, nt_task_steady, nt_task_stiffer, nt_task_dent,
-    nt_task_scratch, nt_task_push, nt_task_pattern, nt_task_wire, nt_task_lesson, nt_task_pages[5];
+extern const nt_task nt_task_find, nt_task_pull_off, nt_task_trace, nt_task_steady, nt_task_stiffer, nt_task_slower,
+    nt_task_dent, nt_task_scratch, nt_task_push, nt_task_pattern, nt_task_wire, nt_task_lesson, nt_task_pages[5];
 
 #endif

@@ -35,12 +35,12 @@ static nt_status show(nt_session_host *host, char letter)
     const double half = sqrt(nt_staircase_ratio(&trainer->stairs));
     trainer->shown = letter;
     return nt_host_set(host, "sample.youngs_modulus",
-                       trainer->modulus * (letter == trainer->stiff ? half : 1.0 / half));
+                       trainer->modulus * (letter == trainer->wanted ? half : 1.0 / half));
 }
 
 static nt_status deal(nt_session_host *host)
 {
-    host->trainer.stiff = nt_random_uniform(&host->trainer.random) < 0.5 ? 'A' : 'B';
+    host->trainer.wanted = nt_random_uniform(&host->trainer.random) < 0.5 ? 'A' : 'B';
     return show(host, 'A');
 }
 
@@ -78,7 +78,7 @@ static void finish(nt_session_host *host)
     const double felt = felt_stiffness(host, half) / felt_stiffness(host, 1.0 / half) - 1.0;
     int right = 0;
     for (int i = 0; i < trainer->trial_count; ++i)
-        right += trainer->trials[i].stiffer == trainer->trials[i].answer;
+        right += trainer->trials[i].wanted == trainer->trials[i].answer;
     nt_trainer_measure(host, "Weber fraction of the modulus", "", ratio - 1.0);
     nt_trainer_measure(host, "Weber fraction of felt stiffness", "", felt);
     nt_trainer_measure(host, "d ln k/d ln E", "", trainer->target);
@@ -102,8 +102,8 @@ static nt_status choose(nt_session_host *host, int number)
     if (number < 2)
         return show(host, (char)('A' + number));
     const char answer = (char)('A' + number - 2);
-    trainer->trials[trainer->trial_count++] = (nt_trial){nt_staircase_ratio(&trainer->stairs), trainer->stiff, answer};
-    nt_staircase_take(&trainer->stairs, answer == trainer->stiff);
+    trainer->trials[trainer->trial_count++] = (nt_trial){nt_staircase_ratio(&trainer->stairs), trainer->wanted, answer};
+    nt_staircase_take(&trainer->stairs, answer == trainer->wanted);
     if (!nt_staircase_done(&trainer->stairs) && trainer->trial_count < NT_TRIALS)
         return deal(host);
     finish(host);
@@ -146,6 +146,7 @@ static void solve(nt_operator *op)
 const nt_task nt_task_stiffer = {
     .about = {"stiffer", "Tell the stiffer of two samples", "cell_in_liquid", "", "", NT_HOST_NOTHING, 0},
     .hides = "contact|law|sliders",
+    .trials = "pair,ratio of moduli,stiffer,answer,right",
     .choices = "lay A|lay B|A is stiffer|B is stiffer",
     .words = "Press on A, lift, press on B. Which one is stiffer? Of 10 % of the modulus {felt} % are felt.{dull}",
     .begin = begin,

@@ -5,9 +5,9 @@
 #include "host/state.h"
 
 static const nt_task *const tasks[] = {
-    &nt_task_find,     &nt_task_pull_off, &nt_task_trace,    &nt_task_steady,   &nt_task_stiffer, &nt_task_dent,
-    &nt_task_scratch,  &nt_task_push,     &nt_task_pattern,  &nt_task_wire,     &nt_task_lesson,  &nt_task_pages[0],
-    &nt_task_pages[1], &nt_task_pages[2], &nt_task_pages[3], &nt_task_pages[4],
+    &nt_task_find,     &nt_task_pull_off, &nt_task_trace,    &nt_task_steady,   &nt_task_stiffer,  &nt_task_slower,
+    &nt_task_dent,     &nt_task_scratch,  &nt_task_push,     &nt_task_pattern,  &nt_task_wire,     &nt_task_lesson,
+    &nt_task_pages[0], &nt_task_pages[1], &nt_task_pages[2], &nt_task_pages[3], &nt_task_pages[4],
 };
 enum { TASKS = sizeof tasks / sizeof *tasks };
 

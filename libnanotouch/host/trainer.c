@@ -217,9 +217,10 @@ static void add_head(nt_text *text, const nt_trainer *trainer)
                      (const nt_figure[]){{"name", 0.0, NULL, of->name}, {"unit", 0.0, NULL, of->unit}, {0}});
         nt_text_general(text, of->value, 17);
     }
-    nt_text_add(text, trainer->trial_count
-                          ? "\npair,ratio of moduli,stiffer,answer,right\n"
-                          : "\ntime [s],x [m],y [m],gap [m],least force [N],largest force [N],contact\n");
+    nt_text_add(text, "\n");
+    nt_text_add(text, trainer->trial_count ? trainer->task->trials
+                                           : "time [s],x [m],y [m],gap [m],least force [N],largest force [N],contact");
+    nt_text_add(text, "\n");
 }
 
 static void add_trace(nt_text *text, const nt_trace_row *row)
@@ -236,8 +237,8 @@ static void add_trial(nt_text *text, const nt_trial *trial, long number)
     nt_text_general(text, (double)number, 9);
     nt_text_add(text, ",");
     nt_text_general(text, trial->ratio, 17);
-    const char letters[] = {
-        ',', trial->stiffer, ',', trial->answer, ',', trial->stiffer == trial->answer ? '1' : '0', '\n', '\0'};
+    const char letters[] = {',',  trial->wanted, ',', trial->answer, ',', trial->wanted == trial->answer ? '1' : '0',
+                            '\n', '\0'};
     nt_text_add(text, letters);
 }
 

@@ -114,6 +114,28 @@ def test_samples_are_not_exchanged_under_the_tip(tmp_path: Path) -> None:
     assert refused == ["not yet: lift the tip first"]
 
 
+def test_a_sample_without_a_relaxation_time_has_no_slower_one(tmp_path: Path) -> None:
+    for preset in ("silicon_in_air", "polymer_gel"):  # elastic; a power law, which has no time of its own
+        host, told = begun("slower", tmp_path, preset)
+        assert newest(told, "refused")["why"].endswith("this sample has no relaxation time; lay chondrocyte")
+        host.close()
+
+
+def test_who_always_says_the_same_does_not_find_the_slower_one(tmp_path: Path) -> None:
+    """The two samples are apart by a ratio of 4 at first; at the end the sample is again what it was."""
+    host, told = begun("slower", tmp_path)
+    own = 2.8 / 11.7  # [s]
+    assert host.session.scene.rheology.relaxation_time_1 in (pytest.approx(2.0 * own), pytest.approx(0.5 * own))
+    for _ in range(100):
+        host.answer({"do": "choose", "number": 2})
+    task, (figures, rows) = newest(told, "task"), result_of(host)
+    assert host.session.scene.rheology.relaxation_time_1 == pytest.approx(own, rel=1e-12)
+    host.close()
+    assert not task["passed"]
+    assert float(figures["Weber fraction of the relaxation time"]) > 1.0
+    assert rows[0] == ["pair", "ratio of relaxation times", "slower", "answer", "right"]
+
+
 def test_what_a_task_hides_is_shown_again_at_its_end(tmp_path: Path) -> None:
     host, told = begun("trace", tmp_path)
     assert newest(told, "task")["hides"] == ["contact", "surface"]
