@@ -274,6 +274,7 @@ set(nanotouch_sources_host
     host/messages.c
     host/operator.c
     host/presets.c
+    host/recovery.c
     host/refusals.c
     host/sliders.c
     host/staircase.c

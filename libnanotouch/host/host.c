@@ -119,6 +119,7 @@ nt_status nt_host_learn(nt_session_host *host)
     if (before.stiffness != now->stiffness || before.zero != now->zero || before.facts.load != now->facts.load)
         nt_energy_begin(host);
     host->bounds = bounds_of(host->session);
+    nt_recovery_learn(host);
     host->due |= NT_DUE_WORLD | NT_DUE_GUIDE;
     return status;
 }
@@ -130,6 +131,7 @@ nt_status nt_host_open(nt_session_host *host, nt_session *session)
     host->hand = (nt_proxy){0};
     host->event = (nt_host_event){.told = -INFINITY};
     nt_left_forget(host);
+    nt_recovery_forget(host);
     const nt_status status = nt_host_learn(host);
     if (!host->is_laid)
         host->meant = nt_session_setup_of(session)->scene;
@@ -178,6 +180,7 @@ void nt_host_see(nt_session_host *host, const nt_frame *frames, long count)
         nt_energy_see(host, &frames[i]);
         nt_event_see(host, &frames[i]);
         nt_left_see(host, &frames[i]);
+        nt_recovery_see(host, &frames[i]);
         nt_trainer_see(host, &frames[i]);
     }
 }

@@ -190,10 +190,15 @@ static const struct {
     unsigned due;
     const char *name;
     void (*tell)(nt_session_host *host, nt_text *json);
-} messages[] = {{NT_DUE_SLIDERS, "sliders", tell_sliders}, {NT_DUE_WORLD, "world", tell_world},
-                {NT_DUE_DENTS, "dents", tell_dents},       {NT_DUE_PARTICLES, "particles", nt_trainer_tell_particles},
-                {NT_DUE_EVENT, "event", nt_event_tell},    {NT_DUE_TASK, "task", nt_trainer_tell},
-                {NT_DUE_GUIDE, "guide", tell_guide},       {NT_DUE_NOTE, "note", tell_note},
+} messages[] = {{NT_DUE_SLIDERS, "sliders", tell_sliders},
+                {NT_DUE_WORLD, "world", tell_world},
+                {NT_DUE_DENTS, "dents", tell_dents},
+                {NT_DUE_RECOVERY, "recovery", nt_recovery_tell},
+                {NT_DUE_PARTICLES, "particles", nt_trainer_tell_particles},
+                {NT_DUE_EVENT, "event", nt_event_tell},
+                {NT_DUE_TASK, "task", nt_trainer_tell},
+                {NT_DUE_GUIDE, "guide", tell_guide},
+                {NT_DUE_NOTE, "note", tell_note},
                 {NT_DUE_REFUSED, "refused", tell_refused}};
 
 long nt_host_tell(nt_session_host *host, char *text, size_t size)

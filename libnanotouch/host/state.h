@@ -7,6 +7,7 @@
 #include "host/text.h"
 #include "nanotouch/host.h"
 #include "nanotouch/plan.h"
+#include "nanotouch/viscoelastic_loop.h"
 
 enum { NT_HOST_HISTORY = 64, NT_HOST_KEPT = 16, NT_HOST_NAME = 64, NT_HOST_MOVES = 64 };
 
@@ -20,7 +21,8 @@ enum {
     NT_DUE_PARTICLES = 32,
     NT_DUE_TASK = 64,
     NT_DUE_EVENT = 128,
-    NT_DUE_GUIDE = 256
+    NT_DUE_GUIDE = 256,
+    NT_DUE_RECOVERY = 512
 };
 
 /* A particle that was pushed: where it lay before. */
@@ -68,6 +70,16 @@ typedef struct nt_host_energy {
     int has_last, is_free, is_stopped;
 } nt_host_energy;
 
+/* A surface that relaxes, along the gaps that were seen. */
+typedef struct nt_host_recovery {
+    nt_viscoelastic_bed bed;
+    nt_viscoelastic_state state;
+    double x[NT_LOOP_SPRINGS], edge; /* distances of the springs from the axis, and of the outermost edge [m] */
+    double time, told, depth;        /* of the newest step [s], [s], [m] */
+    int follows, has_last, is_seen;  /* 1: the sample relaxes; time and depth hold; a view draws a dent */
+} nt_host_recovery;
+enum { NT_RECOVERY_ROWS = 41 };
+
 struct nt_session_host {
     nt_session *session;
     char name[NT_HOST_NAME], title[2 * NT_HOST_NAME], hint[4 * NT_HOST_NAME], source[2 * NT_HOST_NAME],
@@ -95,6 +107,7 @@ struct nt_session_host {
     nt_host_bounds bounds;
     nt_host_event event;
     nt_host_guide guide;
+    nt_host_recovery recovery;
     nt_trainer trainer;
 };
 
@@ -133,6 +146,13 @@ nt_status nt_left_lay(nt_session_host *host, const double (*poses)[3], int count
 /* event.c: what snaps and tears */
 void nt_event_see(nt_session_host *host, const nt_frame *frame);
 void nt_event_tell(nt_session_host *host, nt_text *json);
+
+/* recovery.c: the surface of a sample that relaxes */
+void nt_recovery_learn(nt_session_host *host); /* anew where the kernel has changed */
+void nt_recovery_forget(nt_session_host *host);
+void nt_recovery_see(nt_session_host *host, const nt_frame *frame);
+double nt_recovery_depth(const nt_session_host *host, double r); /* of the surface below the undeformed one [m] */
+void nt_recovery_tell(nt_session_host *host, nt_text *json);
 
 /* energy.c: where the work of the hand goes in the last touch */
 void nt_energy_begin(nt_session_host *host);

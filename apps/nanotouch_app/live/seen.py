@@ -55,6 +55,7 @@ class Seen:
         self.waiting: set[str] = set()
         self.task: dict[str, Any] = {}
         self.dented: dented.Dented | None = None
+        self.recovery: tuple[Floats, Floats] | None = None  # of a sample that relaxes: r, its surface there [m]
         self.drawn_dent = (-1.0, -1.0)
         self.place: dict[str, float] = {}
         self.placed_at = 0.0
@@ -81,13 +82,16 @@ class Seen:
                 self.forget()
                 self.frame = self.reading = None
                 self.world = {}
-                self.dented = None
+                self.dented = self.recovery = None
                 self.notes.clear()
             case "clock":
                 self.clock = message
                 self._stand(message.get("here", {}))
             case "dents" if self.dented is not None:
                 self.dented.dents = tuple(Dent.from_numbers(numbers) for numbers in message["dents"])
+            case "recovery":
+                r, z = np.array(message["r"]), np.array(message["z"])
+                self.recovery = (r, z) if len(r) else None
             case "particles":
                 self.snaps += [(self.arrived, event) for event in message["events"]]
             case "event":
@@ -281,7 +285,16 @@ class Seen:
             return None
         if self.dented is not None:
             return self.dented.section(float(self.frame["gap"]), r)
-        return view.section(self.plan, self.scene, float(self.frame["gap"]), float(self.frame["tip_force"][2]), r)
+        made = view.section(self.plan, self.scene, float(self.frame["gap"]), float(self.frame["tip_force"][2]), r)
+        return made if str(self.scene.rheology.kind) == "elastic" else self._relaxed(made)
+
+    def _relaxed(self, made: view.Section) -> view.Section:
+        """Of a sample that relaxes: it touches as far as the session says, and beyond is what has not yet recovered."""
+        a = float(self.frame["contact_radius"])
+        ground = np.zeros_like(made.r) if self.recovery is None else np.interp(made.r, *self.recovery, right=0.0)
+        sample = np.where((a > 0.0) & (made.r <= a), made.rigid_tip, np.minimum(ground, made.rigid_tip))
+        return made._replace(tip=made.rigid_tip, sample=sample, contact_radius=a, cohesive_radius=a,
+                                   attached=a > 0.0)  # fmt: skip
 
     @property
     def meniscus(self) -> bool:

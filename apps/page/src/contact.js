@@ -13,6 +13,22 @@ const inDent = ({ depth, radius, yieldLoad }) => (depth > 0
 export const stateOf = (section, world) => (section.a > 0 ? (world.scene.medium.brush_thickness > 0 ? "pressed, the brush between" : "touching")
   : section.attached ? "held" : `gap ${digits(section.gap, "m")}`);
 
+// Of a sample that relaxes: it touches as far as the session says, and beyond is what has not yet recovered.
+const relaxed = (made, { now, recovery }) => {
+  const a = now.contact, rows = [...made.rows];
+  made.r.forEach((r, i) => {
+    const rigid = rows[3 * i + 2] ?? Infinity;
+    rows[3 * i] = rigid;
+    rows[3 * i + 1] = a > 0 && r <= a ? rigid : Math.min(between(recovery, r), rigid);
+  });
+  return { ...made, rows, a, c: a, attached: a > 0 };
+};
+const between = (of, r) => {
+  const j = of ? of.r.findIndex((at) => at > r) : -1;
+  if (j < 1) return j === 0 ? of.z[0] : 0;
+  return of.z[j - 1] + (r - of.r[j - 1]) / (of.r[j] - of.r[j - 1]) * (of.z[j] - of.z[j - 1]);
+};
+
 export class Contact {
   // shown: how many times the zone of action
   constructor(draw, shown = 3) { Object.assign(this, { ask: draw, shown, halfWidth: 0, section: null, asked: false }); }
@@ -25,7 +41,7 @@ export class Contact {
     const r = Array.from({ length: POINTS }, (_, i) => (i / (POINTS - 1)) ** 1.5 * MORE * this.halfWidth);
     const { gap, force } = seen.now, made = await this.ask({ draw: "section", gap, force, r });
     this.asked = false;
-    if (!made.error) this.section = { ...made, gap, force };
+    if (!made.error) this.section = { ...(seen.world?.scene.rheology.kind === "elastic" ? made : relaxed(made, seen)), gap, force };
   }
 
   // The zone of action fills its part of the frame; the gap is seen, too. Zoom by smooth factors of 2.

@@ -32,7 +32,7 @@ export class Seen {
       case "world": this.#settle(message); break;
       case "laid":
         this.forget();
-        Object.assign(this, { world: null, now: null, reading: null, law: null, dented: null });
+        Object.assign(this, { world: null, now: null, reading: null, law: null, dented: null, recovery: null });
         this.yields.lay(message.surface);
         break;
       case "clock":
@@ -40,6 +40,7 @@ export class Seen {
         this.#stand(message.here ?? {});
         break;
       case "dents": this.yields.hear(message.dents); break;
+      case "recovery": this.recovery = message.r.length ? message : null; break;
       case "particles": this.events.push(...message.events); break;
       case "event": this.event = { at: performance.now(), text: message.text, kind: message.kind }; break;
       case "guide": this.guide = message.text; break;
