@@ -130,7 +130,8 @@ void nt_proxy_follow(nt_proxy *hand, const nt_frame *frame, double elapsed)
     } else if (force > OVER * hand->limit) {
         shift(hand, (const double[NT_AXES]){0.0, 0.0, -(force - hand->limit) / hand->stiffness}, frame);
     } else if (hand->presses) {
-        const double speed = frame->contact_radius > 0.0 ? 4.0 * (hand->press - force) / hand->stiffness
+        const double compliance = STEPS * hand->step / hand->facts.load; /* of spring and sample */
+        const double speed = frame->contact_radius > 0.0 ? 4.0 * (hand->press - force) * compliance
                                                          : fmax(STEPS * hand->step, 2.0 * known(frame->gap));
         (void)nt_proxy_move(hand, (const double[NT_AXES]){0.0, 0.0, elapsed * speed}, frame);
     }

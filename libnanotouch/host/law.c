@@ -53,6 +53,12 @@ double nt_law_stiffness(const nt_plan *plan, double load)
     return retracted_to(plan, load, &gap).k;
 }
 
+double nt_law_slow(const nt_plan *plan)
+{
+    const nt_plan_relaxation *of = &plan->relaxation;
+    return plan->history == NT_HISTORY_RELAXES ? of->slow_modulus / of->bed.modulus_over_period : 1.0;
+}
+
 double nt_law_resting_radius(const nt_plan *plan)
 {
     double gap;

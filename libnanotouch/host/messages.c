@@ -113,6 +113,7 @@ static void tell_world(nt_session_host *host, nt_text *json)
     nt_json_number(json, "force", host->bounds.force);
     nt_json_number(json, "hand", host->bounds.hand);
     nt_json_number(json, "pull_off", host->plan.pull_off_force);
+    nt_json_number(json, "slow", nt_law_slow(&host->plan));
     nt_json_number(json, "undo", nt_host_undoable(host));
     nt_json_number(json, "redo", host->undone_count);
     nt_json_number(json, "clearance", setup->clearance);

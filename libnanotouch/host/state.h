@@ -164,6 +164,7 @@ void nt_energies(const nt_session_host *host, double found[4]);
 const nt_plan *nt_law_with(nt_session_host *host, const char *field, double value); /* NULL: there is none */
 double nt_law_depth(const nt_plan *plan, double load);                              /* indentation [m] */
 double nt_law_stiffness(const nt_plan *plan, double load);                          /* dF/d(indentation) [N/m] */
+double nt_law_slow(const nt_plan *plan);                    /* force of the longest touch over that at once [-] */
 double nt_law_resting_radius(const nt_plan *plan);          /* of the contact without load [m] */
 double nt_law_jump_gap(const nt_plan *plan, double spring); /* 0: none [m] */
 

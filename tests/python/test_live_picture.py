@@ -16,6 +16,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 import synthetic
+import ting_curves
 from nanotouch import curves
 from nanotouch.errors import Error
 from nanotouch_app import view
@@ -24,6 +25,7 @@ from nanotouch_app.live.contact import Contact, View
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.look import LIGHT
 from nanotouch_app.live.remote import Remote
+from nanotouch_app.live.seen import Seen
 from nanotouch_app.live.subject import of_preset
 from nanotouch_app.main import main
 
@@ -213,6 +215,31 @@ def test_a_curve_is_felt_by_the_law_that_fit_takes() -> None:
     assert known["effective_modulus"] == pytest.approx(fitted.values["effective_modulus"], rel=1e-6)
     assert known["work_of_adhesion"] == 0.0
     assert "no adhesion" in subject.said
+
+
+def test_a_curve_of_a_gel_is_felt_as_it_relaxes() -> None:
+    """Ting's closed form, 1.2 kPa at 1 s and beta = 0.2: what is felt relaxes so, and the points lie on its fit."""
+    pytest.importorskip("nanotouch._fit")
+    noise = 10e-12
+    curve = ting_curves.curve_of(ting_curves.Sample(1200.0, 0.2), noise=noise, seed=5)
+    subject = files.of_fit(curve, "gel", 2.5e-6)
+    felt = subject.scene.rheology
+    assert (felt.kind, felt.modulus, felt.exponent) == (
+        "power_law", pytest.approx(1200.0, rel=0.02), pytest.approx(0.2, abs=0.005)
+    )  # fmt: skip
+    assert "it relaxes with beta 0.2" in subject.said
+    rows = np.array(subject.measured)
+    assert 50 < len(rows) < 400
+    assert np.abs(rows[:, 1] - rows[:, 2]).max() < 6.0 * noise
+    seen = Seen()
+    host = Host(subject, seen.hear, stepped=True)
+    host.report()
+    assert len(seen.world["measured"]) == len(rows)
+    assert seen.world["slow"] == pytest.approx((1e6) ** -0.2 * (1.0 - 0.2), rel=0.02)  # E(100 s) over that of 0.1 ms
+    host.answer({"do": "press", "on": True})
+    host.advance(2.0)
+    assert host.observer.newest()["tip_force"][2] > 0.4 * subject.scene.range.maximum_load
+    host.close()
 
 
 def test_each_real_curve_can_be_touched() -> None:

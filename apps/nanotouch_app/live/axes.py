@@ -40,10 +40,14 @@ class Axes:
         return np.stack([self.left + np.clip(across, 0, 1) * self.width,
                          self.bottom + np.clip(up, 0, 1) * self.height], axis=-1)  # fmt: skip
 
+    def holds(self, rows: Any) -> Any:
+        """Which of rows (x, y, ...) are in the frame."""
+        return (rows[:, 0] >= self.x[0]) & (rows[:, 0] <= self.x[1]) & (rows[:, 1] >= self.y[0]) & (
+            rows[:, 1] <= self.y[1])  # fmt: skip
+
     def inside(self, rows: Any) -> Any:
         """Of rows (x, y) those that are in the frame, and the first outside of it at either end."""
-        good = (rows[:, 0] >= self.x[0]) & (rows[:, 0] <= self.x[1]) & (rows[:, 1] >= self.y[0]) & (
-            rows[:, 1] <= self.y[1])  # fmt: skip
+        good = self.holds(rows)
         if not good.any():
             return rows[:0]
         first, last = np.flatnonzero(good)[[0, -1]]

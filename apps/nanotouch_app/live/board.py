@@ -18,6 +18,8 @@ PAGES = sum(task["is_page"] for task in TASKS.values())
 MENU = {**{name: task["title"] for name, task in TASKS.items() if not task["is_page"]},
         "": "No task"}  # fmt: skip
 
+KEYS = (*(f"F{number}" for number in range(1, 13)), "0")
+
 
 def menu() -> dict[str, Any]:
     """The list of all tasks, as a task is told."""
@@ -70,7 +72,7 @@ def draw(
         painter.text(left + PAD, top - PAD - 32.0 - LINE * number, line, colours[kind], SMALL, bold=kind == "score")
     for number, (box, words) in enumerate(zip(buttons(task, left, top), task["choices"], strict=True)):
         painter.box(box, palette.paper, palette.line)
-        painter.text(box[0] + 10, box[1] + 0.5 * BUTTON, f"F{number + 1}", palette.quiet, SMALL)
+        painter.text(box[0] + 10, box[1] + 0.5 * BUTTON, KEYS[number], palette.quiet, SMALL)
         painter.text(box[0] + 44, box[1] + 0.5 * BUTTON, words, palette.ink)
     if typed:
         painter.text(left + PAD, top - height + PAD + 6.0, typed, palette.accent, bold=True)

@@ -57,6 +57,7 @@ class ForceGap:
         low = -self.down.of(max(1.3 * pull, -1.15 * min(recent), 0.1 * top), now)
         axes = Axes(frame, (inner, reach), (low, top))
         axes.draw(painter, palette, ("gap", "force on the tip"), ("m", "N"))
+        self._measured(painter, palette, axes, seen)
         self._law(painter, palette, axes, seen)
         if seen.is_blind:  # somewhere on this level
             painter.line(axes.at(axes.x, (seen.force, seen.force)), palette.repulsion, 1.5)
@@ -67,15 +68,30 @@ class ForceGap:
         words = f"pull-off {digits(pull, 'N')}" if pull > 1e-3 * seen.load else "nothing pulls"
         painter.text(x, y, words, palette.ink, SMALL, "right")
         left = frame[0] + 58
-        for name, colour in (("approach", palette.accent), ("retraction", palette.ink)):
+        names = ("approach", "retraction")
+        if float(seen.world.get("slow", 1.0)) < 1.0:
+            names = ("no force", "at once, and in the end (dashed)")
+        for name, colour in zip(names, (palette.accent, palette.ink), strict=True):
             painter.text(left, frame[1] + 14, name, colour, SMALL)
             left += painter.width_of(name, SMALL) + 12
 
     @staticmethod
     def _law(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:
         painter.line(_mapped(axes, seen.curve.unstable), palette.quiet, 1.5, dashed=True)
+        slow = float(seen.world.get("slow", 1.0))
+        if slow < 1.0:  # a sample that relaxes: between the law at once and that in the end
+            painter.line(_mapped(axes, seen.curve.attached * (1.0, slow)), palette.ink, 1.5, dashed=True)
         painter.line(_mapped(axes, seen.curve.attached), palette.ink, 2.0)
         painter.line(_mapped(axes, seen.curve.apart), palette.accent, 2.0)
+
+    @staticmethod
+    def _measured(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:
+        """The curve that was fitted: its points, and the fit along them."""
+        rows = np.array(seen.world.get("measured", ())).reshape(-1, 3)
+        painter.line(_mapped(axes, rows[:, [0, 2]]), palette.quiet, 1.2)
+        for gap, force, _ in rows[axes.holds(rows)]:
+            x, y = axes.at(gap, force)
+            painter.dot(float(x), float(y), 3.0, palette.quiet, palette.panel)
 
     @staticmethod
     def _lever(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import nanotouch as nt
 from nanotouch import curves, record, rig_file
-from nanotouch import fit as fitting
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.scene import read_tables
 from nanotouch.units import in_words
@@ -144,11 +143,12 @@ def of_curve(path: Path, radius: float | None = None, spring_constant: float | N
 
 def of_fit(curve: nt.ForceCurve, name: str, radius: float | None = None) -> Subject:
     """The same of a curve that has been read; ``radius`` [m] of its tip."""
-    result = fitting.fit_curve(curve, "auto", radius=radius)
+    result = measured.fit(curve, radius)
     (scene, felt), rig = measured.scene_of(result), nt.Rig()
     rig["probe.spring_constant"] = result.spring_constant
     bent = float(scene.range.maximum_load) / result.spring_constant  # its sensor has seen that
     rig["probe.sensitivity"] = max(float(rig.probe.sensitivity), measured.ROOM * bent / float(rig.probe.range))
     assumed = f"; R = {in_words(result.radius, 'm', 3)} is assumed (--radius)" if result.assumed_tip else ""
     return Subject(name, name, scene, rig, _made_for(scene, name), f"{felt}{assumed}.",
-                   "Touch what you have measured.")  # fmt: skip
+                   "Touch what you have measured.", measured=measured.points_of(result),
+                   accuracy=measured.accuracy_of(result))  # fmt: skip

@@ -199,7 +199,7 @@ class Host:
         self.scene = self.session.scene.copy()
         self.session.describe()
         lost = {key: math.inf for key in ("bound", "margin") if world[key] is None}  # JSON has no infinite number
-        return {**world, **lost, "name": self.name}
+        return {**world, **lost, "name": self.name, "measured": self.subject.measured}
 
     def report(self) -> None:
         """Tell all that a front end has to know, from the beginning."""

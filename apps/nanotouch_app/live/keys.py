@@ -23,7 +23,7 @@ PLAIN = {
 }  # fmt: skip
 ARROWS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
 ARROW_PIXELS = 4.0
-FUNCTION_KEYS = tuple(f"f{number}" for number in range(1, 13))
+FUNCTION_KEYS = (*(f"f{number}" for number in range(1, 13)), "0")  # of choices, as board.KEYS shows them
 HEIGHTS = {"plus": True, "kp_add": True, "minus": False, "kp_subtract": False}
 SHOWN = {"c": "cards", "d": "full", "h": "help", "t": "menu"}  # what is seen of the picture, or not
 REPEAT = 0.08  # a key that is let go for less than this [s] is held: X11 repeats it so
@@ -64,6 +64,8 @@ class Keys:
                 self.window.ask("press", on=True)
         elif name == "z":
             self.window.ask("redo" if shift else "undo")
+        elif name == FUNCTION_KEYS[-1] and self.picture.menu:
+            self.window.on_board(len(FUNCTION_KEYS) - 1)
         elif name in "012345" and len(name) == 1:
             seen = self.picture.seen
             self.picture.stage.camera(name, self.picture.stage.apex(seen) if seen.world else None)

@@ -35,6 +35,8 @@ class Subject:
     """what its forces are planned for"""
     particles: Callable[[nt.Scene], nt.Particles] | None = None
     """that a task may lay there, and the tip of a scene pushes"""
+    measured: tuple[tuple[float, float, float], ...] = ()
+    """of a force curve: gap [m], measured and fitted force [N]"""
     rod: Callable[[nt.Scene], Rod] | None = None
     """the same of a rod, instead of particles"""
 

@@ -37,7 +37,11 @@ export class ForceGap {
     const low = -this.down.of(Math.max(1.3 * pull, -1.15 * least, 0.1 * top), now.time);
     const axes = new Axes(painter, [inner, reach], [low, top]);
     axes.draw(palette, ["gap", "force on the tip"], ["m", "N"]);
+    const rows = seen.world.measured ?? [], { slow } = seen.world; // a curve that was fitted; the law in the end over that at once
+    painter.line(axes.mapped(rows.flatMap(([gap, , fitted]) => [gap, fitted])), palette.quiet, 1.2);
+    for (const [gap, force] of rows) if (axes.holds(gap, force)) painter.dot(...axes.at(gap, force), 3, palette.quiet);
     painter.line(axes.mapped(curve.unstable), palette.quiet, 1.5, true);
+    if (slow < 1) painter.line(axes.mapped(curve.attached.map((value, i) => (i % 2 ? slow * value : value))), palette.ink, 1.5, true);
     painter.line(axes.mapped(curve.attached), palette.ink, 2);
     painter.line(axes.mapped(curve.apart), palette.accent, 2);
     this.#spring(axes, seen, palette);
@@ -49,7 +53,8 @@ export class ForceGap {
     painter.dot(...axes.at(now.gap, now.force), 5, colour, palette.panel);
     painter.text(painter.width - 14, 16, pull > 1e-3 * load ? `pull-off ${digits(pull, "N")}` : "nothing pulls", palette.ink, { align: "right" });
     let left = 58;
-    for (const [name, one] of [["approach", palette.accent], ["retraction", palette.ink], ["spring", palette.hold]]) {
+    const names = slow < 1 ? ["no force", "at once, and in the end (dashed)"] : ["approach", "retraction"];
+    for (const [name, one] of [[names[0], palette.accent], [names[1], palette.ink], ["spring", palette.hold]]) {
       painter.text(left, painter.height - 12, name, one);
       left += painter.widthOf(name) + 12;
     }

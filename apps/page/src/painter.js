@@ -115,9 +115,11 @@ export class Axes {
     return [this.left + across * this.width, this.top + (1 - up) * this.height];
   }
 
+  holds(x, y) { return x >= this.x[0] && x <= this.x[1] && y >= this.y[0] && y <= this.y[1]; }
+
   // Of flat rows x, y those in the frame, and the first outside of it at either end, as pixels.
   mapped(rows) {
-    const inside = (i) => rows[i] >= this.x[0] && rows[i] <= this.x[1] && rows[i + 1] >= this.y[0] && rows[i + 1] <= this.y[1];
+    const inside = (i) => this.holds(rows[i], rows[i + 1]);
     let first = -1, last = -1;
     for (let i = 0; i < rows.length; i += 2) {
       if (!inside(i)) continue;
