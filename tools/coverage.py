@@ -27,7 +27,8 @@ ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/coverage"
 FLOORS = ROOT / "tests/coverage/floors.toml"
 INFEASIBLE = ROOT / "tests/coverage/infeasible.toml"
-STEP = 0.5  # of a floor [%]: threads do not run the same lines every time
+STEP = 0.5  # of a floor [%]
+ROOM = 0.25  # below what was measured, unless that is all [%]: threads do not run the same lines every time
 KINDS = ("lines", "branches", "mcdc")
 UNITS = {
     "supervisor": "control/(supervisor|supervisor_make|follow|lift|stuck)\\.c",
@@ -224,7 +225,8 @@ def raised(figures: dict[str, dict[str, float]], floors: dict[str, dict[str, flo
     ]
     for name, row in figures.items():
         old = floors.get(name, {})
-        now = {kind: max(math.floor(row[kind] / STEP) * STEP, old.get(kind, 0.0)) for kind in KINDS}
+        room = {kind: 0.0 if row[kind] == 100.0 else ROOM for kind in KINDS}
+        now = {kind: max(math.floor((row[kind] - room[kind]) / STEP) * STEP, old.get(kind, 0.0)) for kind in KINDS}
         key = name if re.fullmatch(r"\w+", name) else f'"{name}"'
         lines.append(f"{key} = {{ " + ", ".join(f"{kind} = {now[kind]:.1f}" for kind in KINDS) + " }")
     return "\n".join(lines) + "\n"

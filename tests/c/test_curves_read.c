@@ -223,13 +223,62 @@ static void linear_systems(void **state)
     assert_int_equal(nt_curve_solve(singular, right, 2), 0);
 }
 
+enum { PLAIN = 120 };
+static double plain_z[PLAIN], plain_force[PLAIN], plain_work[1 << 14];
+
+static nt_curve_branch read_plain(void)
+{
+    nt_curve_branch found;
+    const nt_curve_segment segment = {plain_z, plain_force, PLAIN};
+    const nt_curve_choice line = {.kind = NT_CURVE_LINE};
+    assert_true((size_t)nt_curve_work_size(PLAIN) <= sizeof plain_work / sizeof *plain_work);
+    assert_int_equal(nt_curve_read_branch(&segment, &line, plain_work, &found, NULL), NT_OK);
+    return found;
+}
+
+/* Forces too small to divide by: found by random input, and read without an end once. */
+static void a_curve_of_denormal_forces_is_read(void **state)
+{
+    (void)state;
+    for (int i = 0; i < PLAIN; i++) {
+        plain_z[i] = 1e-8 * i;
+        plain_force[i] = 1e-320 * (i * 7 % 5 - 2);
+    }
+    const nt_curve_branch found = read_plain();
+    assert_true(isfinite(found.baseline.force) && isfinite(found.baseline.slope));
+    assert_true(fabs(found.baseline.force) <= 2e-320);
+}
+
+/* The load rises while the base stands: a slope would be infinite, and is not known. */
+static void a_base_that_stands_in_contact_shows_no_slope(void **state)
+{
+    (void)state;
+    for (int stands = 0; stands < 2; stands++) {
+        for (int i = 0; i < PLAIN; i++) {
+            const double push = i < 100 ? 0.0 : i - 99.0;
+            plain_z[i] = 1e-6 - 1e-8 * (stands && i >= 99 ? 99.0 : i);
+            plain_force[i] = 1e-11 * (i * 7 % 5 - 2) + 5e-9 * push;
+        }
+        const nt_curve_measured slope = read_plain().contact_slope;
+        if (stands)
+            assert_true(isnan(slope.value) && isnan(slope.sigma));
+        else
+            assert_true(fabs(slope.value / 0.5 - 1.0) < 0.01);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stiff_contact_is_read), cmocka_unit_test(tethers_are_found_to_their_end),
-        cmocka_unit_test(bad_curves_are_refused),  cmocka_unit_test(medians_and_orders),
-        cmocka_unit_test(medians_of_many),         cmocka_unit_test(passes_over_all),
+        cmocka_unit_test(a_stiff_contact_is_read),
+        cmocka_unit_test(tethers_are_found_to_their_end),
+        cmocka_unit_test(bad_curves_are_refused),
+        cmocka_unit_test(medians_and_orders),
+        cmocka_unit_test(medians_of_many),
+        cmocka_unit_test(passes_over_all),
         cmocka_unit_test(linear_systems),
+        cmocka_unit_test(a_curve_of_denormal_forces_is_read),
+        cmocka_unit_test(a_base_that_stands_in_contact_shows_no_slope),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
