@@ -27,6 +27,8 @@ rm -rf "$work"
 mkdir -p "$work"
 git clone -q --no-hardlinks "$root" "$work/source"
 cd "$work/source"
+mkdir -p "$root/build/deps" build
+ln -s "$root/build/deps" build/deps # a Ceres that was built by the same recipe serves again
 
 say "the page"
 tools/setup.sh page
