@@ -9,6 +9,8 @@
 
 #include "nanotouch/supervisor.h"
 
+#define ROUNDING 1e-6 /* of a time: what a record's own may have lost */
+
 static const char *const states[] = {"RUN", "HOLD", "RETRACT", "LATCHED"};
 
 static const char *state_of(uint32_t state)
@@ -115,6 +117,52 @@ nt_status nt_testing_force_below(const nt_record *records, long count, double li
                  fabs(records[worst].tip_force[2]), limit, records[first].time, records[worst].time, text);
 }
 
+typedef struct moments {
+    double event, periods; /* tick of the event, and how many later is in time */
+} moments;
+
+typedef enum verdict { EARLY, IN_TIME, LATE } verdict;
+
+static verdict verdict_of(double tick, const moments *m)
+{
+    if (tick < m->event)
+        return EARLY;
+    return tick - m->event <= m->periods ? IN_TIME : LATE;
+}
+
+/* An event happens in the period that is nearest to its time. */
+static moments moments_of(const nt_record *records, long count, const nt_reaction *wanted)
+{
+    const nt_record *first = &records[0], *last = &records[count - 1];
+    const double ticks = (double)last->tick - (double)first->tick;
+    const double period = ticks > 0.0 ? (last->time - first->time) / ticks : 1.0; /* of one record: any */
+    return (moments){(double)first->tick + floor((wanted->after - first->time) / period + 0.5),
+                     wanted->within / period * (1.0 + ROUNDING)};
+}
+
+/* What came at record i, the first that is in the state. */
+static nt_status judge(const nt_record *records, long i, const moments *m, const nt_reaction *wanted,
+                       nt_finding *finding)
+{
+    const verdict is = verdict_of((double)records[i].tick, m);
+    const verdict since = i > 0 ? verdict_of((double)records[i - 1].tick + 1.0, m) : is;
+    const char *state = state_of(wanted->state);
+    char text[120];
+    say_state(&records[i], text, sizeof text);
+    if (is == EARLY)
+        return found(finding, "%s, before %.6g s", text, wanted->after);
+    if (since != is) { /* it may have come in any period since the record before */
+        snprintf(finding->text, sizeof finding->text,
+                 "no records between %.6g s and %.6g s: whether %s came %s %.6g s is not known; give every period",
+                 records[i - 1].time, records[i].time, state, since == EARLY ? "before" : "in time after",
+                 wanted->after);
+        return NT_E_RANGE;
+    }
+    if (is == LATE)
+        return found(finding, "no %s within %.3g s of %.6g s; %s", state, wanted->within, wanted->after, text);
+    return NT_OK;
+}
+
 nt_status nt_testing_reacts(const nt_record *records, long count, const nt_reaction *wanted, nt_finding *finding)
 {
     if (!begin(records, count, finding) || !wanted)
@@ -125,18 +173,12 @@ nt_status nt_testing_reacts(const nt_record *records, long count, const nt_react
         return refused(finding, "within: valid is a finite time above 0 s");
     if (!(wanted->after >= records[0].time && wanted->after <= records[count - 1].time))
         return refused(finding, "after: it must lie within the records");
-    const double rounding = count > 1 ? 1e-6 * (records[1].time - records[0].time) : 0.0; /* of the times */
-    char text[160];
+    const moments m = moments_of(records, count, wanted);
     for (long i = 0; i < count; ++i) {
-        if (records[i].state < wanted->state || records[i].state > NT_LATCHED)
-            continue; /* a number that is no state is no reaction */
-        say_state(&records[i], text, sizeof text);
-        if (records[i].time < wanted->after - rounding)
-            return found(finding, "%s, before %.6g s", text, wanted->after);
-        if (records[i].time <= wanted->after + wanted->within + rounding)
-            return NT_OK;
-        return found(finding, "no %s within %.3g s of %.6g s; %s", state_of(wanted->state), wanted->within,
-                     wanted->after, text);
+        if (i > 0 && records[i].tick <= records[i - 1].tick)
+            return refused(finding, "tick: it must rise from record to record");
+        if (records[i].state >= wanted->state && records[i].state <= NT_LATCHED) /* a number that is no state is none */
+            return judge(records, i, &m, wanted, finding);
     }
     return found(finding, "no %s within %.3g s of %.6g s; it ended in %s", state_of(wanted->state), wanted->within,
                  wanted->after, state_of(records[count - 1].state));

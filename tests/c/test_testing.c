@@ -105,6 +105,42 @@ static void a_reaction_has_its_time(void **state)
     assert_int_equal(nt_testing_reacts(records, ROWS, NULL, &finding), NT_E_ARGUMENT);
 }
 
+/* Two records are missing before the first that is in HOLD: what depends on them is not known. */
+static void records_that_are_missing_are_not_passed_over(void **state)
+{
+    (void)state;
+    nt_record records[ROWS];
+    nt_finding finding;
+    make(records);
+    for (int i = 3; i < ROWS; ++i) {
+        records[i].tick += 2;
+        records[i].time += 2e-4;
+        records[i].state = NT_HOLD; /* recorded at 1.2005 s, and perhaps so from 1.2003 s on */
+    }
+    const struct {
+        double after, within;
+        nt_status status;
+    } cases[] = {
+        {1.2002, 3e-4, NT_OK},        {1.2003, 2e-4, NT_OK},      {1.2004, 1e-4, NT_E_RANGE},
+        {1.2002, 2.9e-4, NT_E_RANGE}, {1.2002, 1e-4, NT_E_RANGE}, {1.2001, 1e-4, NT_E_STATE},
+        {1.2006, 1e-4, NT_E_STATE},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        const nt_reaction wanted = {NT_HOLD, cases[i].after, cases[i].within};
+        const nt_status status = nt_testing_reacts(records, ROWS, &wanted, &finding);
+        if (status != cases[i].status)
+            fail_msg("case %d: status %d: %s", (int)i, (int)status, finding.text);
+    }
+    const nt_reaction before = {NT_HOLD, 1.2004, 1e-4};
+    nt_testing_reacts(records, ROWS, &before, &finding);
+    assert_string_equal(finding.text,
+                        "no records between 1.2002 s and 1.2005 s: whether HOLD came before 1.2004 s is not "
+                        "known; give every period");
+    records[2].tick = records[1].tick;
+    assert_int_equal(nt_testing_reacts(records, ROWS, &before, &finding), NT_E_RANGE);
+    assert_string_equal(finding.text, "tick: it must rise from record to record");
+}
+
 static void records_are_compared(void **state)
 {
     (void)state;
@@ -131,9 +167,8 @@ static void records_are_compared(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stop_is_told),
-        cmocka_unit_test(a_force_above_its_limit_is_told),
-        cmocka_unit_test(a_reaction_has_its_time),
+        cmocka_unit_test(a_stop_is_told),          cmocka_unit_test(a_force_above_its_limit_is_told),
+        cmocka_unit_test(a_reaction_has_its_time), cmocka_unit_test(records_that_are_missing_are_not_passed_over),
         cmocka_unit_test(records_are_compared),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -30,6 +30,13 @@ def test_a_fault_begins_and_ends_where_it_is_told_to() -> None:
     assert state[500] == HOLD
 
 
+@pytest.mark.parametrize("ticks", [499.51, 500.0, 500.3, 500.49])
+@pytest.mark.parametrize("periods", [1e-6, 0.3, 0.7, 1.0])
+def test_one_shorter_than_a_period_takes_the_nearest_sample(ticks: float, periods: float) -> None:
+    state = states(Faults().add("nan", "deflection", at=1e-4 * ticks, duration=1e-4 * periods), 0.052)
+    assert np.flatnonzero(state).tolist() == [500]
+
+
 def test_two_samples_in_a_row_retract() -> None:
     state = states(Faults().add("nan", "deflection", at=0.05, duration=2e-4))
     assert state[500:502].tolist() == [HOLD, RETRACT]

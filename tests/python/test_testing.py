@@ -113,6 +113,9 @@ def test_a_reaction_is_in_time_to_the_tick_and_what_was_not_recorded_is_not_pass
     assert "before 0.005 s" in message(lambda: testing.assert_reacts(touch(49), "HOLD", after=5e-3, within=1.0))
     with pytest.raises(InvalidValue, match=r"no rows between 0.004 s and 0.005 s: whether HOLD came before"):
         testing.assert_reacts(touch(45)[::10], "HOLD", after=5e-3, within=1.0)
+    with pytest.raises(InvalidValue, match=r"no rows between 0.005 s and 0.006 s: whether HOLD came within 200 µs of"):
+        testing.assert_reacts(touch(51)[::10], "HOLD", after=5e-3, within=2e-4)  # it did
+    testing.assert_reacts(touch(51)[::10], "HOLD", after=5e-3, within=1e-3)
     unknown = Recording({"time": PERIOD * np.arange(3), "state": [0, 0, 7]})
     with pytest.raises(InvalidValue, match=r"state 7 at 0.0002 s: valid are 0 .. 3"):
         testing.assert_reacts(unknown, "HOLD", after=0.0, within=1.0)
@@ -222,6 +225,55 @@ def test_a_backend_that_breaks_its_contract_is_told_in_words() -> None:
     assert "position" in said
     with pytest.raises(InvalidValue, match="duration = 0 s"):  # no fault of the backend's
         testing.assert_conforms(Pen(), duration=0)
+
+
+class Stage(nt.hal.Slave):
+    """Follows at once but for a share of the way; `swapped` takes x for y."""
+
+    share, swapped, lowest = 0.8, False, -np.inf
+
+    def open(self, host: nt.hal.Host) -> None:
+        self.at, self.least = [0.0, 0.0, 1e-6], [0.0, 0.0, 1e-6]
+
+    def describe(self) -> nt.hal.Capabilities:
+        channel = nt.hal.Channel("stage", "m", driven=True, minimum=self.lowest, maximum=1e-5, safe=1e-6)
+        return nt.hal.Capabilities(axes=3, feels=True, channels=(channel,))
+
+    def read(self) -> nt.hal.Reading:
+        x, y, z = self.at
+        return nt.hal.Reading(position=(y, x, z) if self.swapped else (x, y, z), felt=(np.nan, np.nan, z * 1e-9))
+
+    def write(self, action: nt.hal.Action) -> None:
+        start = (0.0, 0.0, 1e-6)
+        self.at = [a + self.share * (b - a) for a, b in zip(start, action.target, strict=True)]
+        self.least = [min(a, b) for a, b in zip(self.at, self.least, strict=True)]
+
+
+@pytest.mark.filterwarnings("ignore:the deflection is the same number")
+def test_a_stage_that_does_not_go_where_it_is_sent_is_found_where_it_may_move() -> None:
+    def stage(**what: Any) -> Stage:
+        made = Stage()
+        vars(made).update(what)
+        return made
+
+    still = testing.assert_conforms(stage(share=0.0))  # nothing is moved, and it says so
+    assert [said for said in still.unchecked if "whether z goes where it is commanded" in said]
+    good = stage()
+    moved = testing.assert_conforms(good, move=1e-7)
+    assert not [said for said in moved.unchecked if "goes where" in said]
+    assert good.least == pytest.approx([0.0, 0.0, 1e-6 - 0.8e-7])  # away from the sample
+    cramped = stage(lowest=1e-6)
+    testing.assert_conforms(cramped, move=1e-7)
+    assert cramped.least[2] == pytest.approx(1e-6)  # no room there
+    for what in ({"share": 0.0}, {"share": -1.0}, {"share": 1.6}, {"share": 1e3}, {"swapped": True}):
+        said = message(lambda what=what: testing.assert_conforms(stage(**what), move=1e-7))
+        assert "error of x after a move, over the move = " in said
+    assert "room for a move along z" in message(lambda: testing.assert_conforms(stage(lowest=0.95e-6), move=1e-5))
+    for wrong in (-1e-9, 1e-3, float("nan")):
+        with pytest.raises(InvalidValue, match=r"valid is 0 \.\. 0.0001 m"):
+            testing.assert_conforms(stage(), move=wrong)
+    with pytest.raises(InvalidValue, match="a master is not moved"):
+        testing.assert_conforms(Pen(), move=1e-9)
 
 
 PROGRAM = """

@@ -346,7 +346,7 @@ static void raise_rehearsed(nt_status status, const nt_problem &problem, const s
     raise_on(status, problem, what);
 }
 
-static py::tuple rehearse(const py::object &given, bool is_master, double period, long periods, bool real)
+static py::tuple rehearse(const py::object &given, bool is_master, double period, long periods, bool real, double move)
 {
     const nt_half half = is_master ? NT_HALF_MASTER : NT_HALF_SLAVE;
     const std::shared_ptr<Half> made = half_of(given, half);
@@ -355,7 +355,7 @@ static py::tuple rehearse(const py::object &given, bool is_master, double period
     Stage stage{real, 0, {}};
     const nt_host host = {sizeof host, NT_HAL_API_VERSION, stage_now, stage_say, &stage};
     const nt_configuration configuration = {sizeof configuration, 0, period, 1e-6, made->option.c_str()};
-    const nt_rehearsal rehearsal = {half, made->choice, &host, configuration, periods, stage_pass};
+    const nt_rehearsal rehearsal = {half, made->choice, &host, configuration, periods, stage_pass, move};
     nt_rehearsed seen{};
     nt_problem problem{};
     nt_status status;
@@ -370,7 +370,9 @@ static py::tuple rehearse(const py::object &given, bool is_master, double period
     py::list said;
     for (const std::string &line : stage.said)
         said.append(text_of(line.c_str()));
-    return py::make_tuple(seen.readings, seen.oldest, said, seen.same);
+    return py::make_tuple(seen.readings, seen.oldest, said, seen.same, seen.moved,
+                          (seen.capabilities.can & NT_CAN_FEEL) != 0, (seen.capabilities.can & NT_CAN_PUSH) != 0,
+                          seen.capabilities.axes);
 }
 
 void bind_hal(py::module_ &module)

@@ -96,8 +96,11 @@ static double elapsed(const nt_sim_link *link, const nt_fault *fault)
     return (double)link->tick * link->period - fault->start + 0.5 * link->period;
 }
 
+/* One that is no longer than a period acts in one tick, the nearest to its start, and not between two. */
 static int is_active(const nt_sim_link *link, const nt_fault *fault)
 {
+    if (fault->duration <= link->period * (1.0 + 1e-9))
+        return (double)link->tick == floor(fault->start / link->period + 0.5);
     const double since = elapsed(link, fault);
     return since >= 0.0 && since < fault->duration;
 }

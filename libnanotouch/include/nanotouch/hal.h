@@ -71,6 +71,7 @@ typedef struct nt_rehearsal {
     nt_configuration configuration;                   /* what it is told; its period is that of the rehearsal */
     long periods;                                     /* to read and write, at least 1 */
     void (*pass)(const nt_host *host, double period); /* lets a period pass on the host's clock */
+    double move; /* how far a slave goes along each axis that it reads, and back; 0: nothing is moved [m] */
 } nt_rehearsal;
 
 /* What has been seen. */
@@ -79,12 +80,14 @@ typedef struct nt_rehearsed {
     uint64_t readings;            /* new ones */
     double oldest;                /* largest age of a valid reading [s] */
     uint32_t same;                /* channels (NT_READS_*) whose readings, fifty at least, were one number all along */
+    uint32_t moved;               /* bit 1 << axis: it went where it was commanded, and back */
 } nt_rehearsed;
 
 /* Opens and closes a half, then goes twice through its whole life: open, describe, configure, arm, some periods,
- * disarm, close. A master's motor is told 0 N, a slave to stay where it reads. Not real-time safe. seen and problem may
- * be NULL. NT_OK; what an operation returned, with its name as problem->field; or NT_E_RANGE with the broken rule
- * (docs/hal.md lists them). */
+ * disarm, close. A master's motor is told 0 N, a slave to stay where it reads; with `move`, at the end of the second
+ * life, each axis goes that far and back, z away from the sample where its range allows it, a leg within half of the
+ * periods. Not real-time safe. seen and problem may be NULL. NT_OK; what an operation returned, with its name as
+ * problem->field; or NT_E_RANGE with the broken rule (docs/hal.md lists them). */
 NT_API nt_status nt_hal_rehearse(const nt_rehearsal *rehearsal, nt_rehearsed *seen, nt_problem *problem);
 
 /* --- the loop: calls a step at a fixed rate on the monotonic clock (NT_E_UNSUPPORTED where there is none) --- */

@@ -32,7 +32,8 @@ typedef struct nt_reaction {
     double within;  /* how soon [s], above 0 */
 } nt_reaction;
 
-/* It did so in time, and not before the event. */
+/* It did so in time, and not before the event, which happens in the period nearest to `after`. Records whose ticks do
+ * not rise, or where those are missing that would tell, are NT_E_RANGE. */
 NT_API nt_status nt_testing_reacts(const nt_record *records, long count, const nt_reaction *wanted,
                                    nt_finding *finding);
 

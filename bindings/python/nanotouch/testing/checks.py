@@ -14,7 +14,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.testing._given import TIME, number, rows_of
 from nanotouch.touch import _stopped
 from nanotouch.touch.columns import COLUMNS, STATES
-from nanotouch.touch.hal import Mailbox, Master, Rehearsed, Replay, SharedObject, Slave, rehearse
+from nanotouch.touch.hal import Mailbox, Master, Rehearsed, Replay, SharedObject, Slave, _check_move, rehearse
 from nanotouch.touch.record import Recording
 from nanotouch.touch.session import Session
 from nanotouch.units import in_words
@@ -108,20 +108,33 @@ def assert_reacts(
     event = math.floor((after - time[0]) * rate + 0.5)
     if ticks[row] < event:
         raise AssertionError(f"{_state_at(recording, row)}, before {after:{TIME}} s")
-    if row and ticks[row - 1] < event - 1:
-        raise InvalidValue(
-            f"no rows between {time[row - 1]:{TIME}} s and {time[row]:{TIME}} s: whether {state} came before "
-            f"{after:{TIME}} s is not known; give every period"
-        )
-    if ticks[row] - event > within * rate * (1.0 + ROUNDING):
-        late = f"{_state_at(recording, row)}, {_after(time[row] - after)} later"
-        raise AssertionError(f"no {state} within {_after(within)} of {after:{TIME}} s; {late}")
+    late = _is_late(ticks[row], event, within * rate)
+    if row:
+        since = ticks[row - 1] + 1  # it may have come in any period since
+        if since < event or _is_late(since, event, within * rate) != late:
+            when = f"within {_after(within)} of" if since >= event else "before"
+            raise InvalidValue(
+                f"no rows between {time[row - 1]:{TIME}} s and {time[row]:{TIME}} s: whether {state} came {when} "
+                f"{after:{TIME}} s is not known; give every period"
+            )
+    if late:
+        said = f"{_state_at(recording, row)}, {_after(time[row] - after)} later"
+        raise AssertionError(f"no {state} within {_after(within)} of {after:{TIME}} s; {said}")
+
+
+def _is_late(tick: float, event: float, periods: float) -> bool:
+    return bool(tick - event > periods * (1.0 + ROUNDING))
 
 
 def assert_conforms(
-    half: Master | Slave | SharedObject | Mailbox | Replay, *, slave: bool = False, duration: float = 0.2
+    half: Master | Slave | SharedObject | Mailbox | Replay,
+    *,
+    slave: bool = False,
+    duration: float = 0.2,
+    move: float = 0.0,
 ) -> Rehearsed:
-    """A backend keeps the contract of docs/hal.md, in time that does not pass on a clock. Nothing is moved.
+    """A backend keeps the contract of docs/hal.md, in time that does not pass on a clock. Without `move` nothing is
+    moved, so a stage that ignores its commands passes: `unchecked` of what it returns says what was not looked at.
 
     Parameters
     ----------
@@ -131,12 +144,17 @@ def assert_conforms(
         Which half a shared object, a mailbox or a replay is.
     duration : float
         How long it is read and written in each of two lives [s].
+    move : float
+        How far a slave may be moved along each axis whose position it reads, and back [m], up to 1e-4 m; z away from
+        the sample where its range allows it. It has to arrive within half of that, and the other axes to stay. 0:
+        nothing is moved.
     """
     if not 1e-3 <= number("duration", duration, "s") <= 3600.0:
         raise InvalidValue(f"duration = {duration} s: valid is 0.001 .. 3600 s")
+    _check_move(half, not (slave or isinstance(half, Slave)), number("move", move, "m"))
     waits = isinstance(half, Mailbox)  # its program lives on the clock
     try:
-        return rehearse(half, slave=slave, duration=duration, real_time=waits)
+        return rehearse(half, slave=slave, duration=duration, real_time=waits, move=move)
     except InvalidValue as broken:
         raise AssertionError(f"the contract of a backend is broken: {broken}") from None
 

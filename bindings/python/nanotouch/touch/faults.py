@@ -95,7 +95,7 @@ class Faults:
         at : float, optional
             When it begins, after the session's first tick [s]; None: from switching on, before the preflight.
         duration : float
-            How long it lasts [s]; one period is one sample.
+            How long it lasts [s]; one period is one sample. A shorter one takes the sample nearest to `at`.
         value : float, optional
             See the kind; by default its own.
         """

@@ -304,6 +304,8 @@ class Rehearsed(NamedTuple):
     """what it told the user"""
     advice: tuple[str, ...]
     """what to declare, so that a session does not take it for broken"""
+    unchecked: tuple[str, ...] = ()
+    """what a rehearsal of this half did not look at"""
 
 
 def rehearse(
@@ -313,8 +315,10 @@ def rehearse(
     period: float = 1e-3,
     duration: float = 0.2,
     real_time: bool = True,
+    move: float = 0.0,
 ) -> Rehearsed:
-    """Does it keep the contract (docs/hal.md)? Opened and closed, then twice its whole life; nothing is moved.
+    """Does it keep the contract (docs/hal.md)? Opened and closed, then twice its whole life; nothing is moved without
+    `move`.
 
     Parameters
     ----------
@@ -328,6 +332,10 @@ def rehearse(
         How long it is read and written in each life [s].
     real_time : bool
         Periods pass on the clock; without, they take no time, which suits a half that makes its own readings.
+    move : float
+        At the end, a slave goes this far and back along each axis whose position it reads [m], z away from the sample
+        where its range allows it, each way in half of `duration`; up to 1e-4 m. It has to arrive, and the other axes
+        to stay, within half of that. 0: it is commanded to stay where it is.
 
     Raises
     ------
@@ -341,11 +349,39 @@ def rehearse(
     if not period <= duration <= 3600.0:
         raise InvalidValue(f"duration = {duration} s: valid is {period:g} .. 3600 s")
     is_master = not (slave or isinstance(half, Slave))
-    readings, oldest, said, same = _core.rehearse(half, is_master, period, round(duration / period), real_time)
+    _check_move(half, is_master, move)
+    periods = round(duration / period)
+    readings, oldest, said, same, moved, feels, pushes, axes = _core.rehearse(
+        half, is_master, period, periods, real_time, move
+    )
     advice = tuple(words for bit, words in QUIET.items() if not is_master and same >> bit & 1)
     for words in advice:
         warnings.warn(words, stacklevel=2)
-    return Rehearsed(readings, oldest, said, advice)
+    unchecked = _not_pushed(feels, pushes) if is_master else _not_moved(feels, axes, moved, move)
+    if not real_time:
+        unchecked.append("how long its calls take: no time passed on a clock")
+    return Rehearsed(readings, oldest, said, advice, tuple(unchecked))
+
+
+def _not_pushed(feels: bool, pushes: bool) -> list[str]:
+    """What is not looked at in a master."""
+    told = ["the motor's force: it got 0 N"] if pushes else []
+    return [*told, "the operator's force: nobody pushed"] if feels else told
+
+
+def _not_moved(feels: bool, axes: int, moved: int, move: float) -> list[str]:
+    """What is not looked at in a slave; moved: axes that went, by their bit."""
+    why = "no position is read" if move else "nothing was moved; move=... [m] does"
+    unseen = [i for i in ((0, 1, 2) if axes > 1 else (2,)) if not moved >> i & 1]
+    told = [f"whether {'xyz'[i]} goes where it is commanded: {why}" for i in unseen]
+    return [*told, "sign and size of the deflection: nothing was touched"] if feels else told
+
+
+def _check_move(half: object, is_master: bool, move: float) -> None:
+    if move != 0.0 and (is_master or isinstance(half, Replay)):
+        raise InvalidValue(f"move = {move} m: a {'master' if is_master else 'replay'} is not moved; valid is 0 m")
+    if not 0.0 <= move <= 1e-4:
+        raise InvalidValue(f"move = {move} m: valid is 0 .. 0.0001 m")
 
 
 class GpioLine(NamedTuple):

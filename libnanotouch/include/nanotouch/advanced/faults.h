@@ -49,7 +49,7 @@ typedef struct nt_fault {
     nt_fault_kind kind;
     nt_channel channel;
     double start;    /* on the rig's clock [s] */
-    double duration; /* [s], > 0; infinite: it stays */
+    double duration; /* [s], > 0; below a period: in the one tick nearest to start; infinite: it stays */
     double value;    /* by kind: see the table [unit of the kind] */
 } nt_fault;
 
