@@ -130,7 +130,8 @@ def test_silence_and_other_hands_end_it(what: str) -> None:
 
 
 @pytest.mark.parametrize("data", [
-    b"", b"no gzip", gzip.compress(b"[]", mtime=0), gzip.compress(b'{"parameters": 3}', mtime=0), "[" * 10_000, "{}", '{"signals": {}}',
+    b"", b"no gzip", gzip.compress(b"[]", mtime=0), gzip.compress(b'{"parameters": 3}', mtime=0),
+    "[" * 10_000, "{}", '{"signals": {}}',
     '{"parameters": {"A": {"value": "1"}, "B": {"value": true}, "C": 3, "D": {"value": 1e99}}}',
 ])  # fmt: skip
 def test_garbage_says_nothing(data: str | bytes) -> None:
