@@ -252,15 +252,11 @@ class Stage(nt.hal.Slave):
 @pytest.mark.filterwarnings("ignore:the deflection is the same number")
 def test_a_stage_that_does_not_go_where_it_is_sent_is_found_where_it_may_move() -> None:
     def stage(**what: Any) -> Stage:
-        made = Stage()
-        vars(made).update(what)
-        return made
+        return type("Own", (Stage,), what)()
 
-    still = testing.assert_conforms(stage(share=0.0))  # nothing is moved, and it says so
-    assert [said for said in still.unchecked if "whether z goes where it is commanded" in said]
+    assert [said for said in testing.assert_conforms(stage(share=0.0)).unchecked if "whether z goes" in said]
     good = stage()
-    moved = testing.assert_conforms(good, move=1e-7)
-    assert not [said for said in moved.unchecked if "goes where" in said]
+    assert not [said for said in testing.assert_conforms(good, move=1e-7).unchecked if "goes where" in said]
     assert good.least == pytest.approx([0.0, 0.0, 1e-6 - 0.8e-7])  # away from the sample
     cramped = stage(lowest=1e-6)
     testing.assert_conforms(cramped, move=1e-7)
@@ -272,8 +268,6 @@ def test_a_stage_that_does_not_go_where_it_is_sent_is_found_where_it_may_move() 
     for wrong in (-1e-9, 1e-3, float("nan")):
         with pytest.raises(InvalidValue, match=r"valid is 0 \.\. 0.0001 m"):
             testing.assert_conforms(stage(), move=wrong)
-    with pytest.raises(InvalidValue, match="a master is not moved"):
-        testing.assert_conforms(Pen(), move=1e-9)
 
 
 PROGRAM = """

@@ -364,13 +364,11 @@ def rehearse(
 
 
 def _not_pushed(feels: bool, pushes: bool) -> list[str]:
-    """What is not looked at in a master."""
     told = ["the motor's force: it got 0 N"] if pushes else []
     return [*told, "the operator's force: nobody pushed"] if feels else told
 
 
 def _not_moved(feels: bool, axes: int, moved: int, move: float) -> list[str]:
-    """What is not looked at in a slave; moved: axes that went, by their bit."""
     why = "no position is read" if move else "nothing was moved; move=... [m] does"
     unseen = [i for i in ((0, 1, 2) if axes > 1 else (2,)) if not moved >> i & 1]
     told = [f"whether {'xyz'[i]} goes where it is commanded: {why}" for i in unseen]
