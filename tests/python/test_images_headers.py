@@ -152,3 +152,9 @@ def test_a_wsxm_header_that_contradicts_itself_is_refused(tmp_path: Path, old: b
     path.write_bytes(re.sub(old, new, path.read_bytes(), count=1))
     with pytest.raises(ReadError, match=message):
         images.read(path)
+
+
+def test_a_wsxm_header_without_its_y_amplitude_is_told(tmp_path: Path) -> None:
+    path = wsxm(tmp_path / "image")
+    path.write_bytes(re.sub(rb" *Y Amplitude:[^\n]*\n", b"", path.read_bytes(), count=1))
+    assert "its header states no Y Amplitude: taken as the X Amplitude" in images.read(path).notes

@@ -246,6 +246,41 @@ def test_last_lines_of_zeros_were_not_scanned(tmp_path: Path) -> None:
     assert "all heights are equal" in flat.notes[0]
 
 
+def test_a_comment_of_a_nanonis_scan_may_hold_the_mark_of_its_end(tmp_path: Path) -> None:
+    path = write_sxm(tmp_path / "a.sxm")
+    path.write_bytes(path.read_bytes().replace(b":REC_DATE:", b":COMMENT:\nsee\n:SCANIT_END:\nthere\n:REC_DATE:", 1))
+    np.testing.assert_allclose(images.read(path).heights, HEIGHTS, atol=1e-14)
+
+
+def test_a_nanonis_scan_of_two_ranges_is_refused(tmp_path: Path) -> None:
+    path = write_sxm(tmp_path / "a.sxm")
+    path.write_bytes(path.read_bytes().replace(b":SCAN_DIR:", b":SCAN_RANGE:\n8E-6 6E-6\n:SCAN_DIR:", 1))
+    with pytest.raises(ReadError, match=r"SCAN_RANGE as '4.*' and as '8E-6 6E-6'"):
+        images.read(path)
+
+
+@pytest.mark.parametrize(
+    ("new", "message"),
+    [
+        (struct.pack("<d", -1e-6), "/0/data: xreal is -1e-06"),
+        (struct.pack("<d", 1e-6) + b"xreal\0d" + struct.pack("<d", 2e-6), "'xreal' that differ: 1e-06 and 2e-06"),
+    ],
+    ids=["negative", "twice"],
+)
+def test_a_width_of_gwyddion_is_positive_and_stated_once(tmp_path: Path, new: bytes, message: str) -> None:
+    path = tmp_path / "a.gwy"
+    images.write(path, images.Topography(HEIGHTS, (SIDE[0] / NY, SIDE[1] / NX)))
+    content = path.read_bytes()
+    at = content.index(b"xreal\0d") + 7
+    content = bytearray(content[:at] + new + content[at + 8 :])
+    more, start = len(new) - 8, content.index(b"GwyDataField\0") + 13
+    for where in (content.index(b"GwyContainer\0") + 13, start):  # lengths of the objects around it
+        struct.pack_into("<I", content, where, struct.unpack_from("<I", content, where)[0] + more)
+    path.write_bytes(content)
+    with pytest.raises(ReadError, match=message):
+        images.read(path)
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [(b".000000E", b",000000E"), (b":SCAN_", b":Scan_"), (b"\n", b"\r\n"), (b":REC_DATE:", b":REC_M\xfc\xb5:")],

@@ -56,6 +56,53 @@ REFUSED = {
 }
 
 
+def emptied(number: int, *words: str) -> str:
+    """With words in the place of a whole row."""
+    rows = list(ROWS)
+    rows[number] = "\t".join(words if len(words) == 10 else 10 * words)
+    return HEADER + "\n".join(rows) + "\n"
+
+
+FORTRAN = HEADER + "\n".join("\t".join(f"{v:.6e}".replace("e", "D") for v in row) for row in Z) + "\n"
+QUOTED = HEADER + "\n".join(",".join(f'"{v:.4f}"' for v in row) for row in Z) + "\n"
+SAME |= {"exponents of Fortran": FORTRAN.encode, "numbers in quotes": QUOTED.encode}
+REFUSED |= {
+    f"{name} in row {row}": (emptied(row, *words), f"line {row + 5} of a table holds '{words[0]}'")
+    for name, words in {"N/A": ("N/A",), "#N/A": ("#N/A",), "NULL": ("NULL",), "x": ("x",)}.items()
+    for row in (0, 5, 11)
+} | {
+    "a row of words": (
+        emptied(5, *["no", "number", "is", "in", "this", "whole", "row", "of", "words"], "at"),
+        "line 10 of .* 'no'",
+    ),
+    "underscores of Python": (holed(5, "-37_1.7"), "line 10 of a table holds '-37_1.7'"),
+    "a row with underscores of Python": (emptied(5, "1_000"), "line 10 of a table holds '1_000'"),
+    "inf with more behind it": (holed(5, "inf_"), "line 10 of a table holds 'inf_'"),
+    "digits of another script": (emptied(5, "\u0661\u0662"), "line 10 of a table holds"),
+}
+
+
+@pytest.mark.parametrize("row", [0, 5, 11])
+@pytest.mark.parametrize("word", ["1.#QNAN", "-1.#IND", "-nan(ind)", "1.#INF00", "nan", "-nan", ""])
+def test_a_row_of_what_is_no_number_is_missing(word: str, row: int, tmp_path: Path) -> None:
+    """It keeps its place, so that pixels keep their size."""
+    (tmp_path / "t.txt").write_text(emptied(row, word), encoding="utf-8")
+    found = images.read(tmp_path / "t.txt")
+    assert found.pixel_size == pytest.approx((0.3e-6, 0.3e-6))
+    np.testing.assert_array_equal(np.flatnonzero(found.mask[::-1].all(axis=1)), [row])
+    assert found.mask.sum() == 10
+    assert "missing" in " ".join(found.notes)
+
+
+def test_a_row_of_what_is_no_number_between_commas_is_missing(tmp_path: Path) -> None:
+    (tmp_path / "t.txt").write_text(emptied(5, "1.#QNAN").replace("\t", ","), encoding="utf-8")
+    found = images.read(tmp_path / "t.txt")
+    assert found.shape == (12, 10)
+    assert found.mask[6].all()
+    assert found.mask.sum() == 10
+    assert "10 numbers of its table written as 1.#QNAN: missing" in found.notes
+
+
 @pytest.mark.parametrize("name", SAME)
 def test_a_table_is_read_whole(name: str, tmp_path: Path) -> None:
     (tmp_path / "t.txt").write_bytes(SAME[name]())

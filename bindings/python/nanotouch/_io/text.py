@@ -19,6 +19,11 @@ _ROW = re.compile(r"[-+\d.,;\seE]+|(?i:[-+\d.,;\se]|nan|bad|inf(?:inity)?)+")
 _WITH_COMMA = re.compile(
     r"(?P<head>[^:=]*[:=]\s*[-+]?)(?P<before>\d+),(?P<after>\d+)(?P<tail>(?:[eE][-+]?\d+)?\s*[^\d\s,.]*)\s*"
 )
+_FORTRAN = re.compile(r"(?<![\w.])([-+]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+))[dD]([-+]?[0-9]+)(?![\w.])")
+_NO_NUMBER = re.compile(
+    r"(?<![\w.])[-+]?(?:[0-9]+[.,]#(?:QNAN|SNAN|IND|INF|QNB|J)[0-9]*|nan\(\w*\))(?![\w.])", re.IGNORECASE
+)
+_QUOTED = re.compile(r'"\s*([^",\s]+)\s*"')
 _LOOKED_AT = 200  # rows
 _TAIL, _ALIKE = 20000, 8  # characters at the end, and rows there, that tell how numbers are written
 _SHIFT_JIS_MICRO = "\x83\xca"  # as latin-1
@@ -54,6 +59,13 @@ def decoded(raw: bytes) -> str:
 def is_row(line: str) -> bool:
     """Whether a line holds nothing but numbers."""
     return bool(line.strip()) and any(c.isdigit() for c in line) and _ROW.fullmatch(line) is not None
+
+
+def respelled(line: str) -> str:
+    """A row as others write it: without quotes around its numbers, ``e`` for Fortran's ``D``, ``nan`` for Microsoft's
+    ``1.#QNAN``. Any other line as it is."""
+    row = _NO_NUMBER.sub("nan", _FORTRAN.sub(r"\1e\2", _QUOTED.sub(r"\1", line)))
+    return row if is_row(row) or set(re.split(r"[\s,;]+", row.strip(" \t,;"))) == {"nan"} else line
 
 
 def plain(text: str) -> str:

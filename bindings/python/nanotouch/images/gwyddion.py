@@ -117,7 +117,30 @@ def _content(file: Path) -> dict[str, Any]:
     (length,) = struct.unpack_from("<I", raw, at)
     if name != "GwyContainer" or at + 4 + length > len(raw):
         raise ReadError(f"{file}: it is cut off or damaged")
-    return dict(_components(raw[at + 4 : at + 4 + length], _DEPTH))
+    try:
+        content = _once(_components(raw[at + 4 : at + 4 + length], _DEPTH))
+    except _Twice as error:
+        raise ReadError(f"{file}: {error}") from None
+    for key, field in content.items():
+        if re.fullmatch(r"/\d+/data", key) and isinstance(field, dict):
+            for side in ("xreal", "yreal"):
+                if isinstance(field.get(side), float) and not field[side] > 0.0:
+                    raise ReadError(f"{file}: {key}: {side} is {field[side]:g}, expected a positive length")
+    return content
+
+
+class _Twice(ValueError):
+    """One name for two components that differ."""
+
+
+def _once(components: Iterator[tuple[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in components:
+        if name in found and found[name] != value:
+            told = f": {found[name]!r} and {value!r}" if isinstance(value, (int, float, str)) else ""
+            raise _Twice(f"it holds two components {name!r} that differ{told[:80]}")
+        found[name] = value
+    return found
 
 
 def _components(raw: memoryview, depth: int) -> Iterator[tuple[str, Any]]:
@@ -134,7 +157,7 @@ def _components(raw: memoryview, depth: int) -> Iterator[tuple[str, Any]]:
         elif kind == b"o" and depth > 0:
             _, inside = _text(raw, at)
             end = inside + 4 + struct.unpack_from("<I", raw, inside)[0]
-            value = dict(_components(raw[inside + 4 : end], depth - 1)) if end <= len(raw) else None
+            value = _once(_components(raw[inside + 4 : end], depth - 1)) if end <= len(raw) else None
         elif kind in _ARRAYS:
             end = at + 4 + _ARRAYS[kind] * struct.unpack_from("<I", raw, at)[0]
             value = raw[at + 4 : end]

@@ -24,7 +24,8 @@ from .checks import LENGTHS, check_shape
 
 NAME = "nanotouch/nanonis"
 SIGNATURE = b":NANONIS_VERSION:"
-_END, _MARK = b":SCANIT_END:", b"\x1a\x04"
+_END = re.compile(rb"^:SCANIT_END:\s*\x1a\x04", re.MULTILINE)  # a comment may hold the words alone
+_DECIDES = ("SCANIT_TYPE", "SCAN_PIXELS", "SCAN_RANGE", "SCAN_DIR", "DATA_INFO")
 _HEADER_LIMIT = 1 << 22  # byte; those seen have 20 KiB
 _ORDERS = {"MSBFIRST": ">f4", "LSBFIRST": "<f4"}
 _PASS = re.compile(r"\[[^\]]*\]")
@@ -104,17 +105,10 @@ def _listed(scan: _Scan) -> list[Channel]:
 def _header(file: Path) -> _Scan:
     with file.open("rb") as stream:
         content = stream.read(_HEADER_LIMIT)
-    text, end, rest = content.partition(_END)
-    at = rest.find(_MARK)
-    if not end or at < 0:
+    ends = _END.search(content)
+    if ends is None:
         raise ReadError(f"{file}: its header does not end")
-    facts: dict[str, list[str]] = {}
-    lines: list[str] = []
-    for line in text.decode("latin-1").splitlines():
-        if line.startswith(":") and line.rstrip().endswith(":"):
-            lines = facts.setdefault(line.strip().strip(":").upper(), [])
-        elif line.strip():
-            lines.append(line)
+    facts = _facts(file, content[: ends.start()].decode("latin-1"))
     scan_type = _words(file, facts, "SCANIT_TYPE")
     if len(scan_type) != 2 or scan_type[0] != "FLOAT" or scan_type[1] not in _ORDERS:
         raise ReadError(f"{file}: numbers of the type {' '.join(scan_type)}, expected FLOAT MSBFIRST or LSBFIRST")
@@ -126,8 +120,25 @@ def _header(file: Path) -> _Scan:
     direction = [word.casefold() for word in _words(file, facts, "SCAN_DIR")]
     if direction not in (["up"], ["down"]):
         raise ReadError(f"{file}: scanned {' '.join(direction)!r}, expected up or down")
-    start = len(text) + len(end) + at + len(_MARK)
-    return _Scan((ny, nx), (height, width), direction == ["up"], _pictures(file, facts), start, _ORDERS[scan_type[1]])
+    up, order = direction == ["up"], _ORDERS[scan_type[1]]
+    return _Scan((ny, nx), (height, width), up, _pictures(file, facts), ends.end(), order)
+
+
+def _facts(file: Path, text: str) -> dict[str, list[str]]:
+    """The lines below each key. One that decides how the data are read is not stated twice in two ways."""
+    found: list[tuple[str, list[str]]] = []
+    for line in text.splitlines():
+        if line.startswith(":") and line.rstrip().endswith(":"):
+            found.append((line.strip().strip(":").upper(), []))
+        elif line.strip() and found:
+            found[-1][1].append(line)
+    facts: dict[str, list[str]] = {}
+    for key, lines in found:
+        known = facts.setdefault(key, lines)
+        if key in _DECIDES and [line.split() for line in known] != [line.split() for line in lines]:
+            told = " and as ".join(repr(" ".join(" ".join(one).split())[:60]) for one in (known, lines))
+            raise ReadError(f"{file}: its header states {key} as {told}")
+    return facts
 
 
 def _words(file: Path, facts: dict[str, list[str]], key: str) -> list[str]:

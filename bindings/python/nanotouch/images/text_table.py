@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,6 +20,7 @@ import numpy as np
 from .._arrays import Floats
 from .._io import text
 from .._io.readers import head_of
+from .._io.words import counted
 from ..errors import ReadError
 from .checks import LENGTHS
 from .text_dialects import translated
@@ -37,7 +38,8 @@ _DECIDES = (
     *_SIZES, *_UNITS, "channel", "x-unit", "y-unit", "x-pixels", "y-pixels", "nx", "ny", "scale x", "scale y", "unit x",
     "bit2nm", "file format",
 )  # fmt: skip
-_MISSING = {"nan", "bad", "inf", "infinity", "-inf", "+inf"}
+_MISSING = {"bad", *(sign + word for sign in ("", "-", "+") for word in ("nan", "inf", "infinity"))}
+_LEFT_EMPTY = {"n/a", "#n/a", "na", "null", "none", "x", "-", "--", "---", "void", "missing", "undefined", "*"}
 
 
 @dataclass(frozen=True)
@@ -105,8 +107,11 @@ def _plain(file: Path) -> tuple[str | None, dict[str, tuple[float, float]], tupl
     if not text.is_text(raw):
         return _NOTHING
     decoded = text.decoded(raw)
+    written = decoded.splitlines()
+    spelled = [text.respelled(line) for line in written]
+    told = _told_missing(written, spelled)
     try:
-        lines = text.plain(decoded).splitlines()
+        lines = text.plain("\n".join(spelled)).splitlines()
     except text.NotATable as error:
         raise ReadError(f"{file}: {error}") from None
     lines, notes = translated(file, [_without_comment(line) for line in lines])
@@ -114,8 +119,10 @@ def _plain(file: Path) -> tuple[str | None, dict[str, tuple[float, float]], tupl
     if len(rows) < _NUMBERS:
         return _NOTHING
     columns = len(lines[rows[0]].split())
+    lines, emptied = _with_empty_rows(lines, rows, columns)
+    notes += told + emptied
     for number, line in enumerate(lines):
-        _refuse_damaged(file, number, line, 0 if rows[0] < number < rows[-1] else columns)
+        _refuse_damaged(file, number, line, columns, rows[0] < number < rows[-1])
     tables = _tables(file, lines)
     if text.ends_cut(decoded):
         raise ReadError(f"{file}: its last number, {lines[rows[-1]].split()[-1]}, is cut off")
@@ -141,17 +148,39 @@ def _sizes(tables: list[_Table]) -> dict[str, tuple[float, float]]:
     return found
 
 
-def _refuse_damaged(file: Path, number: int, line: str, columns: int) -> None:
-    """A row in which some things are numbers and some are not; words alone are a header between two pictures. Before
-    and after the table only what has as many `columns` is a row."""
+def _told_missing(written: list[str], spelled: list[str]) -> tuple[str, ...]:
+    """A note of what stands for a number that could not be calculated."""
+    words = [
+        word for old, new in zip(written, spelled, strict=True) if old != new for word in re.split(r"[\s;,]+", old)
+    ]
+    found = [word for word in words if "#" in word or "(" in word]
+    return (f"{counted(len(found), 'number')} of its table written as {found[0][:20]}: missing",) if found else ()
+
+
+def _with_empty_rows(lines: list[str], rows: list[int], columns: int) -> tuple[list[str], tuple[str, ...]]:
+    """The lines with ``nan`` in each row of empty cells, and a note of them; the reader would leave such a row out."""
+    kept = list(lines)
+    for number, line in enumerate(lines):
+        if line and not line.strip("\t;, ") and max(map(line.count, "\t;,")) in (columns - 1, columns):
+            kept[number] = "\t".join(columns * ["nan"])
+        elif _is_missing_row(line.replace(",", " ").replace(";", " ")):
+            lines[number] = kept[number] = "\t".join(re.split(r"[\s,;]+", line.strip(" \t,;")))
+    count = sum(a != b for a, b in zip(lines, kept, strict=True))
+    return kept, ((f"{counted(count, 'row')} of empty cells: missing",) if count else ())
+
+
+def _refuse_damaged(file: Path, number: int, line: str, columns: int, inside: bool) -> None:
+    """A row in which something is no number. Words alone may be a header: between two pictures if they are not as many
+    as the `columns`, before and after the table if they are not all the same, nor what is written in empty cells."""
     words = line.split()
-    if len(words) < _NUMBERS or line.lstrip().startswith(("#", "%")) or (columns and len(words) != columns):
-        return
-    with suppress(ValueError):
-        list(map(float, words))
+    is_comment = line.lstrip().startswith(("#", "%")) and not all(word.startswith("#") for word in words)
+    if len(words) < _NUMBERS or is_comment or (not inside and len(words) != columns):
         return
     bad = [word for word in words if word.lower() not in _MISSING and not _is_number(word)]
-    if bad and (len(bad) <= len(words) // 2 or not any(c.isalpha() for c in line)):
+    few = len(bad) <= len(words) // 2 or not any(c.isalpha() for c in line)
+    empty = len(set(bad)) == 1 or {word.casefold() for word in bad} <= _LEFT_EMPTY
+    whole = len(words) == columns and (empty or (inside and _STATED.fullmatch(line) is None))
+    if bad and (few or whole):
         raise ReadError(f"{file}: line {number + 1} of a table holds {bad[0][:40]!r}, which is no number")
 
 
@@ -159,7 +188,7 @@ def _tables(file: Path, lines: list[str]) -> list[_Table]:
     """All tables, in order. A header that states one thing twice is refused, and so are rows of different lengths."""
     found, is_next = [_Table()], False
     for number, line in enumerate(lines, 1):
-        if text.is_row(line):
+        if text.is_row(line) or _is_missing_row(line):
             words = line.split()
             columns = found[-1].columns
             if len(words) != columns and min(len(words), columns) and max(len(words), columns) >= _NUMBERS:
@@ -178,6 +207,11 @@ def _tables(file: Path, lines: list[str]) -> list[_Table]:
             found.append(_Table())
         _agree(file, stated["key"], found[-1].header.setdefault(key, stated["value"].strip()), stated["value"].strip())
     return found
+
+
+def _is_missing_row(line: str) -> bool:
+    words = line.casefold().split()
+    return len(words) >= _NUMBERS and set(words) <= _MISSING
 
 
 def _agree(file: Path, key: str, known: str, value: str) -> None:
@@ -254,4 +288,4 @@ def _is_even(values: Floats) -> bool:
 
 
 def _is_number(word: str) -> bool:
-    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", word) is not None
+    return re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?", word) is not None

@@ -65,6 +65,9 @@ def read(file: Path, channel: str | None) -> Plane:
     values, notes = _scaled(file, header, np.asarray(raw[:, ::-1], np.float64), integers="i" in kind)
     if header.stated not in (None, header.start):
         notes += (f"its header contradicts itself: header size {header.stated}, but its end {header.start}",)
+    control = header.sections.get("Control", {})
+    if listed.size is not None and "Y Amplitude" not in control:
+        notes += ("its header states no Y Amplitude: taken as the X Amplitude",)
     pixel_size = None if listed.size is None else (listed.size[0] / ny, listed.size[1] / nx)
     return Plane(listed.name, values, listed.unit, pixel_size, NAME, notes=notes)
 
