@@ -32,7 +32,9 @@ def write(path: Path, values: Any = NM, axes: dict[str, Any] | None = None, **to
     return path
 
 
-@pytest.mark.parametrize(("unit", "metre"), [("nm", 1e-9), ("um", 1e-6), ("nanometers", 1e-9), (b"nm", 1e-9)])
+@pytest.mark.parametrize(
+    ("unit", "metre"), [("nm", 1e-9), ("um", 1e-6), ("nanometers", 1e-9), (b"nm", 1e-9), (b"\xb5m", 1e-6)]
+)
 def test_a_stated_unit_counts(unit: Any, metre: float, tmp_path: Path) -> None:
     found = images.read(write(tmp_path / "a.h5", 0.01 * NM, units=unit), pixel_size=PIXEL)
     np.testing.assert_allclose(found.heights[::-1], 0.01 * NM * metre, rtol=1e-12)
@@ -43,6 +45,11 @@ def test_a_unit_that_contradicts_the_one_given_is_refused(unit: str, tmp_path: P
     """The given one was taken: 1e3 times too little, or volts as heights."""
     with pytest.raises(ReadError, match=f"states '{unit}' for channel 'height'"):
         images.read(write(tmp_path / "a.h5", units=unit), pixel_size=PIXEL, z_unit="nm")
+
+
+def test_a_scale_of_two_numbers_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ReadError, match=r"scale_factor is .*, 2 numbers, expected one"):
+        images.read(write(tmp_path / "a.h5", units="nm", scale_factor=[1.0, 2.0]), pixel_size=PIXEL)
 
 
 def test_packed_values_and_gaps(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .._io.text import decoded
 from ..errors import ReadError, require
 from .checks import LENGTHS
 
@@ -63,7 +64,10 @@ def facts_of(file: Path, name: str) -> Facts:
 
 def _number(node: Any, key: str, file: Path) -> float:
     try:
-        return float(np.asarray(node.attrs[key]).reshape(-1)[0])
+        values = np.asarray(node.attrs[key]).reshape(-1)
+        if values.size > 1:
+            raise ReadError(f"{file}: {node.name}: {key} is {str(values)[:40]}, {values.size} numbers, expected one")
+        return float(values[0])
     except (TypeError, ValueError, IndexError):
         raise ReadError(f"{file}: {node.name}: {key} is {str(node.attrs[key])[:40]!r}, no number") from None
 
@@ -71,7 +75,8 @@ def _number(node: Any, key: str, file: Path) -> float:
 def _unit(node: Any) -> str | None:
     for key in ("units", "unit"):
         stated = node.attrs.get(key)
-        text = (stated.decode("utf-8", "replace") if isinstance(stated, bytes) else str(stated)).strip()
+        raw = stated if isinstance(stated, bytes) else str(stated).encode("utf-8", "surrogateescape")
+        text = decoded(raw).strip()
         if stated is not None and text:
             return _SPELLED.get(text.casefold().removesuffix("s"), text)
     return None
