@@ -2,7 +2,7 @@
 // How good a fit looks, from 0 to 10, as people have rated curves: by what is left over beside the load.
 //
 // The rule is a curve through the 1132 ratings of nanite's training set (zef18) over its feature con_idt_maxima_75perc:
-// it tells ratings of 5 and more from the others with an area under the curve of 0.94 (docs/fit.md).
+// it separates ratings of 5 and more from the rest with an area under the curve of 0.94 (docs/evidence/fit.md).
 #include <algorithm>
 #include <cmath>
 #include <limits>

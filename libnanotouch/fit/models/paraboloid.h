@@ -38,7 +38,7 @@ NT_VARIANTS static inline void nt_fit_power_many(const nt_fit_branch *branch, nt
     }
 }
 
-/* The scaling of docs/fit.md; the third is 0 but for Maugis-Dugdale. */
+/* The derivatives of docs/evidence/fit.md; the third is 0 but for Maugis-Dugdale. */
 static inline void nt_fit_derive_adhesive(const nt_fit_state *state, double stiffness, double own[NT_FIT_OWN])
 {
     const double elastic = (stiffness * state->indentation - state->range) / 1.5;
