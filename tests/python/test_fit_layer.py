@@ -41,7 +41,7 @@ def test_thick_layer_is_a_half_space(model: str, thick: str) -> None:
 
 
 def test_published_series() -> None:
-    """Garcia and Garcia 2018 and Dimitriadis 2002 against the layer's integral equation (table in docs/evidence/fit.md)."""
+    """Garcia and Garcia 2018 and Dimitriadis 2002 against the integral equation (docs/evidence/fit.md)."""
     depth = np.geomspace(1e-3, 0.6**2, 40)  # R = t = 1: a = 0.8 t
     q = np.sqrt(depth)
     exact = oracle.force("layer", depth, 1.0, 1.0, 1.0) / (4.0 / 3.0 * depth**1.5)
