@@ -47,7 +47,7 @@ static double lambda_of(int i)
 enum { LAMBDAS = 52 };
 
 /* The accuracy a table claims is measured at 3 points per cell; here at others, dense. The bounds by cells per octave
- * are those of docs/contact.md; a polished force is at rounding level from 8 cells on. */
+ * are those of docs/evidence/contact.md; a polished force is at rounding level from 8 cells on. */
 static void errors_are_what_the_table_says(void **state)
 {
     (void)state;

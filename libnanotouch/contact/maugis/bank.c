@@ -9,7 +9,7 @@
 
 #define BETWEEN_CHECKS 1.25 /* errors between the points that are measured can be a little larger */
 #define AWAY_FROM_FOLD 1e-4 /* reduced indentations */
-#define MODEL_ERROR 0.056   /* Maugis-Dugdale to Lennard-Jones, in pull-off force (docs/contact.md) */
+#define MODEL_ERROR 0.056   /* Maugis-Dugdale to Lennard-Jones, in pull-off force (docs/evidence/contact.md) */
 
 nt_maugis_bank_options nt_maugis_bank_defaults(void)
 {

@@ -24,7 +24,7 @@ enum { MAX_CELLS_PER_OCTAVE = 64, MANTISSA_BITS = 52, CHECKS = 3, SLOPE_CHECKS =
 /* And within which rounding of the indentation, and not the table, is measured in k: it does eps/(2 of this) there. */
 #define BESIDE_FOLD 1e-8
 
-/* Maugis-Dugdale to Lennard-Jones, in pull-off force, worst over lambda (docs/contact.md). */
+/* Maugis-Dugdale to Lennard-Jones, in pull-off force, worst over lambda (docs/evidence/contact.md). */
 #define MODEL_ERROR 0.056
 
 static int log2_of(int cells_per_octave)

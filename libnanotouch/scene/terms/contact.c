@@ -13,7 +13,7 @@
 
 #define TABLED 2.0     /* the error of a table oscillates within its cells: what was sampled may be half of it */
 #define NOTHING 0.2    /* cost of an evaluation without contact [Hertz evaluations] */
-#define ROUNDING 1e-12 /* of a force in polished and exact tiers, away from folds (docs/contact.md) */
+#define ROUNDING 1e-12 /* of a force in polished and exact tiers, away from folds (docs/evidence/contact.md) */
 #define ROOTS 4e-11    /* and of stiffness and radius, which go as a root there: 32 DBL_EPSILON over twice 1e-4 */
 
 /* The rows of `forms` whose words and cost depend on more than the form; before them those of nt_shape_kind. */
