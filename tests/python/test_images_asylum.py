@@ -43,6 +43,12 @@ def test_units_by_the_note_and_by_name(tmp_path: Path) -> None:
         images.read(path, "CurrentTrace")
 
 
+def test_the_unit_of_the_wave_counts_where_the_note_states_none(tmp_path: Path) -> None:
+    wave, labels = np.asarray(HEIGHTS.T)[:, :, None], ["HeightTrace"]
+    path = synthetic.write_ibw(tmp_path / "a.ibw", 1e9 * wave, labels, pitch=1e-8, note={"ScanSize": 1e-6}, unit="nm")
+    np.testing.assert_allclose(images.read(path).heights, HEIGHTS, rtol=1e-12)
+
+
 def test_a_channel_that_is_cut_off_is_refused(tmp_path: Path) -> None:
     path = synthetic.write_ibw_image(tmp_path / "a.ibw", {"HeightTrace": HEIGHTS}, 1e-8)
     path.write_bytes(path.read_bytes()[:-2000])

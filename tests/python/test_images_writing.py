@@ -44,6 +44,14 @@ def test_what_is_written_reads_back(tmp_path: Path, ending: str) -> None:
     assert back.channel == "HeightTrace"
 
 
+def test_gsf_keeps_the_mask_and_24_bits_of_a_height(tmp_path: Path) -> None:
+    original = topography(holes=3)
+    back = images.read(images.write(tmp_path / "out.gsf", original))
+    np.testing.assert_array_equal(back.mask, original.mask)
+    measured = ~original.mask
+    np.testing.assert_allclose(back.heights[measured], original.heights[measured], rtol=2.0**-24)
+
+
 def test_hdf5_keeps_filled_heights_as_they_are(tmp_path: Path) -> None:
     """However many: what was repaired before is not filled again."""
     original = topography()

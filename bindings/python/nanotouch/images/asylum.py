@@ -99,13 +99,9 @@ def _listed(wave: _Wave) -> list[Channel]:
 def _meaning(wave: _Wave, name: str) -> tuple[str | None, str]:
     """Unit and kind of a channel."""
     unit = _unit(wave, name) if wave.note and wave.labelled else wave.data_unit or None
-    if (
-        (unit is None or unit in LENGTHS)
-        and wave.data_unit
-        and wave.data_unit not in LENGTHS
-        and not _stated_unit(wave, name)
-    ):
-        unit = wave.data_unit  # the name says a length, the wave does not
+    by_name = unit in LENGTHS or (unit is None and wave.data_unit not in LENGTHS)
+    if by_name and wave.data_unit and not _stated_unit(wave, name):
+        unit = wave.data_unit  # the name says a length in m, the wave something else
     plain = name.casefold()
     other = next((part for part in OTHER_NAMES if part in plain and part != "potential"), "")
     if unit is None and not other and any(part in plain for part in HEIGHT_NAMES):

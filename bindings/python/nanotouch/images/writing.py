@@ -29,7 +29,7 @@ def write(
     """Write an image as ``.gwy`` (Gwyddion; SurfaceTopography reads it too), ``.gsf`` or ``.h5`` (:mod:`.hdf5`).
 
     Heights, size, unit, title, offset and the mask of filled pixels are kept; all read back with :func:`read`. A
-    ``.gsf`` has no mask and 24 bits a height. The file is whole or not there.
+    ``.gsf`` has 24 bits a height, and NaN where the mask is. The file is whole or not there.
 
     Parameters
     ----------
@@ -96,7 +96,8 @@ def _write_gwy(file: Path, topography: Topography, title: str, offset: Offset) -
 
 
 def _write_gsf(file: Path, topography: Topography, title: str, offset: Offset) -> None:
-    gsf.write(file, Plane(title, topography.heights, "m", topography.pixel_size, gsf.NAME), offset)
+    heights = np.where(topography.mask, np.nan, topography.heights)
+    gsf.write(file, Plane(title, heights, "m", topography.pixel_size, gsf.NAME), offset)
 
 
 _WRITERS: dict[str, Writer] = {".gwy": _write_gwy, ".gsf": _write_gsf, ".h5": hdf5.write, ".hdf5": hdf5.write}
