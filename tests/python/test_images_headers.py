@@ -54,6 +54,26 @@ def test_the_whole_file_is_read(tmp_path: Path, kind: str) -> None:
     assert topography.pixel_size == pytest.approx((1.25e-7, 1.25e-7), rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (rb"Dim2Range=", b"Dim2Range=-", r"\[DataSet-0:0\] states Dim2Range as -4.*, expected a number above 0"),
+        (rb"Dim2Unit=m", b"Dim2Unit=m\r\nDim2Range=1e-6", r"states Dim2Range as 1e-6 and as 4"),
+    ],
+)
+def test_a_nanosurf_scale_that_is_none_is_refused(tmp_path: Path, old: bytes, new: bytes, message: str) -> None:
+    path = nanosurf(tmp_path / "image.nid")
+    path.write_bytes(re.sub(old, new, path.read_bytes(), count=1))
+    with pytest.raises(ReadError, match=message):
+        images.read(path)
+
+
+def test_a_nanosurf_scale_without_its_lowest_value_is_noted(tmp_path: Path) -> None:
+    path = nanosurf(tmp_path / "image.nid")
+    path.write_bytes(re.sub(rb"Dim2Min=[^\r]*\r\n", b"", path.read_bytes(), count=1))
+    assert images.read(path).notes == ("[DataSet-0:0] states no Dim2Min: its lowest value is taken as 0",)
+
+
 NOTES = [
     ("nanoscope", rb"(?<=Scan Size: )4000", b"2000", "image width .* but scan size"),
     ("igor", rb"FastScanSize: 3", b"FastScanSize: 9", "FastScanSize .* but pixels times"),

@@ -101,12 +101,31 @@ def _nanosurf(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     sections = re.findall(r"\[(DataSet-\d+:\d+)\](.*?)(?=\n\[|\Z)", text, re.S)
     listed = set(re.findall(r"^Gr\d+-Ch\d+=(\S+)", text, re.M))
     sizes = []
-    for section in (body for name, body in sections if name in listed):
-        facts = dict(line.strip().split("=", 1) for line in section.splitlines() if "=" in line)
+    for name, section in ((name, body) for name, body in sections if name in listed):
+        facts = _once(file, name, section)
+        yield from _nanosurf_scale(file, name, facts)
         if facts.get("SaveMode", "") == "Binary":
             sizes.append(int(facts["Points"]) * int(facts["Lines"]) * int(facts["SaveBits"]) // 8)
     if mark:
         _check_held(file, len(data), sum(sizes), nx)
+
+
+def _once(file: Path, name: str, section: str) -> dict[str, str]:
+    """Keys and values of a section, each said once."""
+    facts: dict[str, str] = {}
+    for key, mark, value in (line.strip().partition("=") for line in section.splitlines()):
+        if mark and facts.setdefault(key, value) != value:
+            raise ReadError(f"{file}: [{name}] states {key} as {facts[key]} and as {value}")
+    return facts
+
+
+def _nanosurf_scale(file: Path, name: str, facts: Mapping[str, str]) -> Iterator[str]:
+    """A range that turns the heights over is refused."""
+    span = re.fullmatch(rf"\s*{_NUMBER}\s*", facts.get("Dim2Range", ""))
+    if span and not float(span[1]) > 0.0:
+        raise ReadError(f"{file}: [{name}] states Dim2Range as {span[1]}, expected a number above 0")
+    if span and "Dim2Min" not in facts:
+        yield f"[{name}] states no Dim2Min: its lowest value is taken as 0"
 
 
 def _digital_surf(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
