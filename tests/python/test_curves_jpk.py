@@ -162,6 +162,17 @@ def test_the_work_grows_as_the_number_of_curves(tmp_path: Path) -> None:
     assert calls[1] < 4.05 * calls[0]
 
 
+def test_a_curve_of_a_map_without_points_is_left_out_and_noted(tmp_path: Path) -> None:
+    whole, path = as_map(tmp_path / "whole.jpk-force-map", 8), tmp_path / "a.jpk-force-map"
+    with zipfile.ZipFile(whole) as old, zipfile.ZipFile(path, "w") as new:
+        for item in old.infolist():
+            lost = item.filename.startswith("index/3/") and item.filename.endswith(".dat")
+            new.writestr(item, b"" if lost else old.read(item))
+    found = curves.read(path)
+    assert [curve.meta["enum"] for curve in found] == [0, 1, 2, 4, 5, 6, 7]
+    assert "1 curve of 8 without points left out" in found[0].meta["notes"]
+
+
 def edited(tmp_path: Path, *pairs: tuple[bytes, bytes]) -> Path:
     """The single curve with other words in the headers of its segments."""
     path = tmp_path / "edited.jpk-force"

@@ -54,13 +54,30 @@ _SETTINGS = "force-segment-header.settings."
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """All curves with the file's own calibration; `calibration` only where the file states none."""
     with Archive(file, calibration) as archive:
-        curves, points = [], 0
+        curves: list[ForceCurve] = []
+        points, empty = 0, 0
         for number in range(len(archive)):
-            curves.append(archive[number])
+            try:
+                curves.append(archive[number])
+            except _Empty:
+                empty += 1
+                continue
             points += sum(len(segment) for segment in curves[-1].segments)
             if points > MAX_POINTS:
                 raise ReadError(f"{file}: more than {MAX_POINTS} points in all; read it curve by curve (curves.stream)")
+        if not curves:
+            raise ReadError(f"{file}: none of its {counted(empty, 'curve')} has points")
+        if empty:
+            first = curves[0]
+            told = f"{counted(empty, 'curve')} of {len(archive)} without points left out"
+            curves[0] = ForceCurve(
+                first.segments, {**first.meta, "notes": (*first.meta.get("notes", ()), told)}, first.name
+            )
         return curves
+
+
+class _Empty(ReadError):
+    """A curve of a map that has a header and no points."""
 
 
 class Archive:
@@ -181,6 +198,8 @@ class Archive:
         deflection, stiffness = self._calibrated(facts, volts, meta)
         key = "force-segment-header.num-points"
         stated = facts.number(key) if key in facts.properties else z.size
+        if z.size == volts.size == 0 and len(self) > 1:
+            raise _Empty(f"{self.file}: {place} has no points")
         if not z.size == volts.size == stated:
             raise ReadError(f"{self.file}: {place} has {z.size} heights, {volts.size} forces, but states {stated:g}")
         _note(meta, facts, role, z.size)
