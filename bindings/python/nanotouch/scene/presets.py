@@ -48,8 +48,8 @@ FELT: dict[str, str] = {
         "Nothing pulls on the way out."
     ),
     "chondrocyte": (
-        "Jelly with a delay: 4 nN sink in 0.17 µm at once and 0.29 µm after 2 s. Held still, the force falls to "
-        "44 %; the dent comes back after the tip has gone."
+        "Jelly with a delay: 4 nN sink in 0.17 µm at once and 0.29 µm after 2 s. At a held indentation the force "
+        "falls to 44 %; the dent comes back after the tip has gone."
     ),
     "polymer_gel": (
         "A soft cushion that never quite rests: 1 nN sinks in 0.35 µm in a second, and a tenth more in each ten "
