@@ -15,7 +15,7 @@ WINDOW = ("window", "picture", "stage", "board", "cards", "sliders", "entry", "c
           "painter", "seen", "desk", "serving", "host", "film", "led", "remote")  # fmt: skip
 VIEWS = [ROOT / f"apps/nanotouch_app/live/{name}.py" for name in WINDOW]
 VIEWS += [*sorted((ROOT / "apps/page/src").glob("*.js")), ROOT / "apps/page/page.html"]
-PLAIN = {"find", "trace", "steady", "rough", "push", "pull_off"}  # words of the field, too
+PLAIN = {"find", "trace", "steady", "rough", "push", "pull_off", "slower"}  # words of the field or requests of the host
 NAMES = [row["name"] for row in (*host.presets(), *host.tasks())]
 SLIDERS = host.sliders(nt.Scene().core, nt.Rig().core, nt.Settings().core)
 TITLES = [row["title"] for row in (*host.presets(), *host.tasks())] + [f'"{slider.title}"' for slider in SLIDERS]
