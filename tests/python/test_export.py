@@ -205,7 +205,7 @@ def test_images_to_gwy_and_gsf(tmp_path: Path, capsys: pytest.CaptureFixture[str
     masks = [container[key] for key in container if key.endswith("/mask")]
     assert any(np.array_equal(mask.data[::-1] > 0.5, hole) for mask in masks)
     assert run(tmp_path / "in.gwy", "--out", tmp_path / "out.gsf") == 0
-    assert "2 missing ones are filled in, which .gsf cannot say" in capsys.readouterr().out
+    assert "2 missing ones are NaN" in capsys.readouterr().out
     back = images.read(tmp_path / "out.gsf")
     np.testing.assert_allclose(np.where(hole, 0, back.heights), np.where(hole, 0, heights), atol=1e-14)
     assert back.size == pytest.approx((2e-6, 3e-6))
@@ -213,7 +213,9 @@ def test_images_to_gwy_and_gsf(tmp_path: Path, capsys: pytest.CaptureFixture[str
     facts = dict(line.split(" = ") for line in content[: content.index(0)].decode().splitlines()[1:])
     assert (facts["XRes"], facts["YRes"], facts["ZUnits"]) == ("32", "24", "m")
     values = np.frombuffer(content[-4 * 32 * 24 :], "<f4").reshape(24, 32)
-    np.testing.assert_array_equal(values[::-1], back.heights.astype("<f4"))
+    np.testing.assert_array_equal(np.isnan(values[::-1]), hole)
+    np.testing.assert_array_equal(back.mask, hole)
+    np.testing.assert_array_equal(values[::-1][~hole], back.heights.astype("<f4")[~hole])
     assert (len(content) - values.nbytes) % 4 == 0
     assert set(content[content.index(0) : -values.nbytes]) == {0}
 

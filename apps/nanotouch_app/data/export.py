@@ -103,7 +103,7 @@ def _export_image(args: argparse.Namespace, ending: str) -> str:
         ny, nx = topography.shape
         told = f"{topography.channel or 'heights'}, {nx} x {ny} pixels"
         if topography.masked_pixels:
-            told += f"; {topography.masked_pixels} missing ones are filled in, which .gsf cannot say; .gwy can"
+            told += f"; {topography.masked_pixels} missing ones are NaN"
         return told
     found, left_out = images.planes(args.file)
     images.write_planes(args.out, found)
