@@ -21,7 +21,7 @@ TRUE = 0.05  # a fit whose lever's sensitivity is off by more than this tells no
 SANE = 1e2, 1e11  # [Pa]; beyond, a fitted modulus is where its search has ended
 ABOVE = 2.0  # times the pull-off is the least load that is planned for: a limit below it would stop each pull
 ROOM = 1.5  # the range of the lever's sensor over the deflection under the largest load
-ADHERES = 0.01  # of the load, from which a pull-off is told
+ADHERES = 0.01  # of the load, from which a pull-off is reported
 ROUNDS = 20  # of the work of adhesion, until its pull-off is the measured one
 
 
