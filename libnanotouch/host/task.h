@@ -102,6 +102,15 @@ int nt_trainer_locks(const nt_session_host *host); /* 1: nothing may be touched 
 void nt_trainer_measure(nt_session_host *host, const char *name, const char *unit, double value);
 void nt_trainer_finish(nt_session_host *host, int passed, double score, const char *pattern, const nt_figure *figures);
 nt_status nt_trainer_early(nt_session_host *host, const char *why, const nt_figure *figures);
+
+/* A task that compares two samples: what lays one, A or B, what deals the next pair, what ends the task. */
+typedef struct nt_comparison {
+    nt_status (*show)(nt_session_host *host, char letter);
+    nt_status (*deal)(nt_session_host *host);
+    void (*finish)(nt_session_host *host);
+} nt_comparison;
+/* Choices 0 and 1 lay A and B, 2 and 3 answer with them; answers end by the staircase. */
+nt_status nt_trainer_compare(nt_session_host *host, const nt_comparison *task, int number);
 const char *nt_trainer_choices(const nt_session_host *host);
 void nt_trainer_tell(nt_session_host *host, nt_text *json);
 void nt_trainer_tell_particles(nt_session_host *host, nt_text *json);

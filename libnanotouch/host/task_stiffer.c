@@ -96,18 +96,7 @@ static void finish(nt_session_host *host)
 
 static nt_status choose(nt_session_host *host, int number)
 {
-    nt_trainer *trainer = &host->trainer;
-    if (trainer->touches)
-        return nt_trainer_early(host, "lift the tip first", NULL);
-    if (number < 2)
-        return show(host, (char)('A' + number));
-    const char answer = (char)('A' + number - 2);
-    trainer->trials[trainer->trial_count++] = (nt_trial){nt_staircase_ratio(&trainer->stairs), trainer->wanted, answer};
-    nt_staircase_take(&trainer->stairs, answer == trainer->wanted);
-    if (!nt_staircase_done(&trainer->stairs) && trainer->trial_count < NT_TRIALS)
-        return deal(host);
-    finish(host);
-    return NT_OK;
+    return nt_trainer_compare(host, &(nt_comparison){show, deal, finish}, number);
 }
 
 /* How deep the sample gives way under a force, on the way to a larger one. */

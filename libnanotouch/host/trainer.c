@@ -136,6 +136,22 @@ nt_status nt_trainer_early(nt_session_host *host, const char *why, const nt_figu
     return nt_host_refuse_filled(host, pattern, figures);
 }
 
+nt_status nt_trainer_compare(nt_session_host *host, const nt_comparison *task, int number)
+{
+    nt_trainer *trainer = &host->trainer;
+    if (trainer->touches)
+        return nt_trainer_early(host, "lift the tip first", NULL);
+    if (number < 2)
+        return task->show(host, (char)('A' + number));
+    const char answer = (char)('A' + number - 2);
+    trainer->trials[trainer->trial_count++] = (nt_trial){nt_staircase_ratio(&trainer->stairs), trainer->wanted, answer};
+    nt_staircase_take(&trainer->stairs, answer == trainer->wanted);
+    if (!nt_staircase_done(&trainer->stairs) && trainer->trial_count < NT_TRIALS)
+        return task->deal(host);
+    task->finish(host);
+    return NT_OK;
+}
+
 /* --- told --- */
 
 const char *nt_trainer_choices(const nt_session_host *host)
