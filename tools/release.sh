@@ -51,7 +51,7 @@ say "Debian packages"
 if command -v dh >/dev/null; then tools/deb.sh "$out" >/dev/null; else say "left out: no debhelper"; fi
 
 say "the site"
-make -s docs
+NANOTOUCH_WHEEL=$(ls "$out"/nanotouch-*-cp"$(.venv/bin/python -c 'import sys; print("%d%d" % sys.version_info[:2])')"-*.whl 2>/dev/null) make -s docs
 tar -C build/docs -czf "$out/nanotouch-site-$version.tar.gz" --exclude=.doctrees .
 
 say "list of parts and checksums"

@@ -128,7 +128,7 @@ install_dependencies() {
 
 install_package() {
   say "Building and installing nanotouch"
-  pip install -q --no-deps --no-build-isolation --force-reinstall .
+  pip install -q --no-deps --no-build-isolation --force-reinstall "${NANOTOUCH_WHEEL:-.}" # tools/release.sh has built one
 }
 
 # The page's C compiler (ziglang, 100 MB): `make page` needs it; `make test` only where node can run what it made.
