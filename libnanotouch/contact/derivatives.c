@@ -28,18 +28,21 @@ typedef struct {
     double pull;      /* P - 2/3 dP/dd d */
 } parts;
 
-/* On the contact branch. In P d1 - 2/3 P1 d the terms of Hertz cancel, whatever their size: it is written without. */
+/* On the contact branch. In P d1 - 2/3 P1 d and in P_lambda d1 - P1 d_lambda the terms of Hertz cancel, whatever their
+ * size: they are written without. */
 static parts contact_parts(double lambda, const nt_maugis_equilibrium *point)
 {
     const nt_maugis_functions f = nt_maugis_functions_at(point->y);
     const double linear = 4.0 / 3.0 * lambda * lambda * f.g2, D = sqrt(linear * linear + 2.0 * lambda * f.g1);
     const double b = point->b, a = point->a, y = point->y, b1 = point->b1;
     const double b_l = -b * (0.5 * f.g1 * b + 8.0 / 3.0 * lambda * f.g2) / D;
-    const double d_l = 2.0 * a * y * b_l - 4.0 / 3.0 * (b + lambda * b_l);
-    const double P_l = 3.0 * a * a * y * b_l - b * f.g3 * (b + 2.0 * lambda * b_l);
+    const double d_l = -4.0 / 3.0 * (b + lambda * b_l), P_l = -b * f.g3 * (b + 2.0 * lambda * b_l); /* of adhesion */
+    const double d1 = -4.0 / 3.0 * lambda * b1, P1 = -lambda * b * (2.0 * b1 * f.g3 + b * f.h3);
+    const double slope = a * (3.0 * a * y * b_l * d1 - 2.0 * y * b_l * P1 - 3.0 * b * point->a1 * d_l) +
+                         2.0 * b * point->a1 * P_l + P_l * d1 - P1 * d_l;
     const double pull = 4.0 / 3.0 * a * (2.0 * b * b * point->a1 - a * a * b1) - b * b * f.g3 * point->d1 +
                         2.0 / 3.0 * b * (2.0 * b1 * f.g3 + b * f.h3) * point->d;
-    return (parts){lambda * (P_l - point->P1 / point->d1 * d_l), lambda * pull / point->d1};
+    return (parts){lambda * slope / point->d1, lambda * pull / point->d1};
 }
 
 /* On the non-contact branch, P = -pi/2 lambda c^2 (maugis.c), at a load. */
