@@ -42,6 +42,7 @@ set(nanotouch_sources_contact
     contact/maugis/branch.c
     contact/maugis/cells.c
     contact/maugis/equilibrium.c
+    contact/maugis/folds.c
     contact/maugis/kernel.c
     contact/maugis/maugis.c
     contact/maugis/solve.c

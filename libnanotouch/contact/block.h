@@ -19,4 +19,14 @@ int nt_jkr_block(const nt_contact *contact, nt_branch branch, nt_law_block *bloc
 /* The same of Maugis-Dugdale, exact; of what stands for U, k and a nothing is known where the load alone is wanted. */
 int nt_maugis_block(const nt_maugis *maugis, nt_branch branch, int load_alone, nt_law_block *block);
 
+/* A contact of its own for every indentation of a block, checked and with adhesion: as nt_reduced_units_of and
+ * nt_reduced_lambda have it, within the valid lambda. */
+typedef struct nt_block_contacts {
+    double lambda[NT_BLOCK];
+    double load[NT_BLOCK], radius[NT_BLOCK], indentation[NT_BLOCK]; /* units: [N], [m], [m] */
+} nt_block_contacts;
+
+/* nt_maugis_block of each, with the same bits. */
+int nt_maugis_block_each(const nt_block_contacts *contacts, nt_branch branch, int load_alone, nt_law_block *block);
+
 #endif

@@ -29,7 +29,21 @@ nt_contact nt_contact_defaults(void)
     };
 }
 
+static int is_within(const nt_field *field, double value)
+{
+    return value >= field->minimum && value <= field->maximum;
+}
+
+static int are_within(const nt_contact *contact)
+{
+    const nt_field *of = contact_fields; /* in their order */
+    return is_within(&of[0], contact->radius) && is_within(&of[1], contact->effective_modulus) &&
+           is_within(&of[2], contact->work_of_adhesion) && is_within(&of[3], contact->cohesive_stress);
+}
+
 nt_status nt_contact_check(const nt_contact *contact, nt_problem *problem)
 {
+    if (contact != NULL && are_within(contact)) /* the table is read where there is something to say */
+        return NT_OK;
     return nt_field_check(contact_fields, CONTACT_FIELDS, contact, problem);
 }

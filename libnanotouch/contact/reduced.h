@@ -27,6 +27,13 @@ typedef struct nt_reduced_units {
 /* By one cube root, (pi w/(K R))^(1/3), so that no intermediate leaves the range of a double. */
 nt_reduced_units nt_reduced_units_of(const nt_contact *contact);
 
+/* Maugis' lambda, by the same root: 2 sigma0 R/(K a_s), a_s the unit of radius. */
+static inline double nt_reduced_lambda(const nt_contact *contact, const nt_reduced_units *units)
+{
+    return 2.0 * contact->cohesive_stress / (4.0 / 3.0 * contact->effective_modulus) *
+           (contact->radius / units->radius);
+}
+
 /* Reduced {U, F, k, a} in SI. */
 static inline nt_law_value nt_reduced_to_si(const nt_law_value *reduced, const nt_reduced_units *units)
 {

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "nanotouch/advanced/maugis_bank.h"
 #include "nanotouch/advanced/maugis_table.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/forces.h"
@@ -17,6 +18,7 @@ enum { COUNT = 4096, CELLS = 400, CALLS = 4096 };
 #endif
 
 static double in[COUNT], out[4][COUNT];
+static nt_contact contacts[COUNT]; /* one for every element */
 static nt_contact_law hertz, jkr, maugis;
 static nt_maugis_cell cells[CELLS];
 static nt_maugis_table table;
@@ -72,6 +74,22 @@ COUNTED element_scalar_exact(void)
     }
 }
 
+COUNTED element_each_exact(void)
+{
+    const nt_maugis_bank exact = {.panels = NULL};
+    const nt_bank_pairs pairs = {contacts, in, NULL, out[0], NULL, NULL, NULL, COUNT, 1, 1, 1};
+    (void)nt_maugis_bank_pairs_n(&exact, NT_BRANCH_STABLE, &pairs);
+}
+
+COUNTED element_folds(void)
+{
+    for (int i = 0; i < CALLS; i++) {
+        nt_maugis made = {.lambda = 0.0};
+        (void)nt_maugis_init(&made, &contacts[i]);
+        out[0][i] = made.folds.pull_off_load;
+    }
+}
+
 int main(void)
 {
     const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.5};
@@ -84,9 +102,11 @@ int main(void)
     for (int i = 0; i < COUNT; i++) {
         random = random * 1664525u + 1013904223u;
         in[i] = -0.9 + 10.0 * (double)(random >> 8) / 16777216.0;
+        contacts[i] = (nt_contact){1.0, 0.75, 1.0 / NT_PI, 0.01 + 0.01 * (double)(i * 37 % COUNT)};
     }
-    void (*const all[])(void) = {element_hertz, element_jkr,          element_exact,    element_exact_values, //
-                                 element_table, element_table_values, element_polished, element_scalar_exact};
+    void (*const all[])(void) = {element_hertz,      element_jkr,          element_exact,    element_exact_values, //
+                                 element_table,      element_table_values, element_polished, element_scalar_exact,
+                                 element_each_exact, element_folds};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         all[i]();
     printf("%g\n", out[0][COUNT / 2]);

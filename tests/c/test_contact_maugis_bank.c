@@ -266,9 +266,9 @@ static void nothing_jumps_at_joins(void **state)
     (void)state;
     const nt_maugis_bank bank = bank_of(4, 4);
     for (int i = 0; i < bank.panel_count[0] + bank.panel_count[1]; i++) {
-        const double v = bank.panels[i].low * 0.93794745721071121163;
+        const double v = bank.panels[i].low * 0.93794745721071221163;
         const double lambda =
-            i < bank.panel_count[0] ? 0.93794745721071121163 / (1.0 + bank.panels[i].low) : 0.93794745721071121163 + v;
+            i < bank.panel_count[0] ? 0.93794745721071221163 / (1.0 + bank.panels[i].low) : 0.93794745721071221163 + v;
         nt_contact low = {1.0, 0.75, 1.0 / NT_PI, 0.5 * lambda * (1.0 - 1e-9)}, high = low;
         high.cohesive_stress = 0.5 * lambda * (1.0 + 1e-9);
         const double grip = nt_maugis_bank_grip_indentation(&bank, &low);

@@ -48,6 +48,36 @@ def test_one_value_whatever_it_stands_beside(model: Any, branch: Any, tier: Any)
         np.testing.assert_array_equal(column, getattr(four, {"energy": "U", "stiffness": "k", "radius": "a"}[value]))
 
 
+@pytest.mark.parametrize("branch", ["", "_approach", "_unstable"])
+def test_a_contact_for_every_element(branch: str) -> None:
+    """Where every parameter changes, each element is that of its contact alone: errors, NaN, in place, too."""
+    count = 700
+    draw = np.random.default_rng(45).uniform
+    radii, stresses = draw(5e-9, 50e-9, count), 10 ** draw(5, 9, count)
+    works = np.where(np.arange(count) % 97 == 5, 0.0, draw(0.01, 0.1, count))
+    over = getattr(ufuncs, f"maugis{branch}")
+    four = over(DEPTHS[:count], radii, E, works, stresses)
+    for value, column in zip(ufuncs.VALUES, four, strict=True):
+        one = getattr(ufuncs, f"maugis_{value}{branch}")
+        alone = [one(*row) for row in zip(DEPTHS[:count], radii, [E] * count, works, stresses, strict=True)]
+        np.testing.assert_array_equal(column, alone)
+        np.testing.assert_array_equal(
+            one(DEPTHS[:count][::-2], radii[::-2], E, works[::-2], stresses[::-2]), alone[::-2]
+        )
+    depths = DEPTHS[:count].copy()
+    getattr(ufuncs, f"maugis_force{branch}")(depths, radii, E, works, stresses, out=depths)
+    np.testing.assert_array_equal(depths, four[1])
+    lams = 10 ** draw(-3, 3, count)
+    lams[40], depths = np.nan, draw(-1, 9, count)
+    depths[50] = np.nan
+    in_units = getattr(ufuncs, f"reduced_force{branch}")
+    np.testing.assert_array_equal(in_units(lams, depths), [in_units(*row) for row in zip(lams, depths, strict=True)])
+    with pytest.raises(InvalidValue, match="lam = -1"):
+        in_units(np.where(np.arange(count) == 300, -1.0, lams), depths)
+    with pytest.raises(InvalidValue, match="radius"):
+        over(DEPTHS[:count], np.where(np.arange(count) == 300, 7.0, radii), E, works, stresses)
+
+
 def test_jkr_in_every_tier_against_mpmath() -> None:
     """delta(a) and F(a) of the textbook at 40 digits, away from the fold; the bounds are those of the tiers."""
     with mp.workdps(40):

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // contact.h, maugis_table.h as ufuncs: a model, a branch, a tier, and a value of {U, F, k, a} or all four.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -8,6 +9,7 @@
 
 #include "contact_table.h"
 #include "nanotouch/advanced/contact_derivatives.h"
+#include "nanotouch/advanced/maugis_bank.h"
 #include "ufunc.h"
 
 namespace
@@ -106,14 +108,64 @@ void fill_nan(const nt_strided &arrays)
             column[i * arrays.out_stride] = std::nan("");
 }
 
+bool is_paired(const ContactUfunc &self)
+{
+    const bool is_maugis = self.model == NT_MAUGIS || self.model == reduced_model;
+    return is_maugis && self.tier == NT_TIER_EXACT && self.branch != NT_BRANCH_UNSTABLE;
+}
+
+nt_contact contact_of(const ContactUfunc &self, const UfuncArrays &at, py::ssize_t i)
+{
+    if (self.model == reduced_model)
+        return {1.0, 0.75, 1.0 / NT_PI, 0.5 * at.parameter(0, i)}; // its units are 1
+    return {at.parameter(0, i), at.parameter(1, i), at.parameter(2, i), at.parameter(3, i)};
+}
+
+constexpr py::ssize_t pairs = 256; // at once
+constexpr py::ssize_t few = 16;    // of a contact: not worth a block
+
+// From `first` on, each element with its own contact: the same bits as alone. False where one fails; nothing is then
+// kept, and what goes on one by one says which.
+bool evaluate_pairs(const ContactUfunc &self, const UfuncArrays &at, py::ssize_t first, py::ssize_t count)
+{
+    std::array<nt_contact, pairs> contacts;
+    double in[pairs], out[4][pairs];
+    for (py::ssize_t i = 0; i < count; ++i) {
+        contacts[static_cast<size_t>(i)] = contact_of(self, at, first + i);
+        std::memcpy(&in[i], at.args[at.argument] + (first + i) * at.steps[at.argument], sizeof in[i]);
+    }
+    const nt_maugis_bank exact{};
+    nt_bank_pairs arrays = {contacts.data(),          in, nullptr, nullptr, nullptr, nullptr, nullptr,
+                            static_cast<long>(count), 1,  1,       1};
+    double **columns[] = {&arrays.U, &arrays.F, &arrays.k, &arrays.a};
+    const int outputs = self.value < 0 ? 4 : 1;
+    for (int j = 0; j < outputs; ++j)
+        *columns[self.value < 0 ? j : self.value] = out[j];
+    if (nt_maugis_bank_pairs_n(&exact, self.branch, &arrays) != NT_OK)
+        return false;
+    for (int j = 0; j < outputs; ++j)
+        for (py::ssize_t i = 0; i < count; ++i)
+            std::memcpy(at.args[at.inputs + j] + (first + i) * at.steps[at.inputs + j], &out[j][i], sizeof(double));
+    return true;
+}
+
 void loop(char **args, const py::ssize_t *dimensions, const py::ssize_t *steps, void *data)
 {
     const ContactUfunc &self = *static_cast<const ContactUfunc *>(data);
     const int parameters = parameter_counts[self.model];
     const UfuncArrays at = {args, steps, self.model == reduced_model ? 1 : 0, 1 + parameters};
     const QuietFlags quiet;
+    py::ssize_t single = 0; // one by one up to here
     for (py::ssize_t first = 0, end = 0; first < dimensions[0]; first = end) {
         end = at.run_end(first, dimensions[0]);
+        const py::ssize_t left = std::min(pairs, dimensions[0] - first);
+        if (end - first < few && left >= few && first >= single && is_paired(self)) {
+            if (evaluate_pairs(self, at, first, left)) {
+                end = first + left;
+                continue;
+            }
+            single = first + left;
+        }
         std::array<double, 4> values{};
         for (int j = 0; j < parameters; ++j)
             values[static_cast<size_t>(j)] = at.parameter(j, first);

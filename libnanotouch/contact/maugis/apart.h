@@ -38,6 +38,15 @@ static inline nt_law_value nt_maugis_apart_value(const nt_maugis *maugis, double
     };
 }
 
+/* {U, F, k, a} at d between the fold and the end of the contact branch: the stable state, which has the larger c. Of
+ * `maugis`, lambda and onset_indentation are read. */
+static inline nt_law_value nt_maugis_apart_stable(const nt_maugis *maugis, double d)
+{
+    const double c_fold = nt_maugis_apart_fold(maugis->lambda), beyond_onset = d - maugis->folds.onset_indentation;
+    const double square = c_fold * c_fold + 2.0 * beyond_onset, root = sqrt(square > 0.0 ? square : 0.0);
+    return nt_maugis_apart_value(maugis, c_fold + root, root);
+}
+
 /* dU/dlambda at c, at constant indentation. */
 static inline double nt_maugis_apart_slope(double lambda, double c)
 {

@@ -17,8 +17,8 @@
 #include <stddef.h>
 
 #include "contact/maugis/apart.h"
+#include "contact/maugis/folds.h"
 #include "contact/maugis/solve.h"
-#include "core/same_bits.h"
 #include "nanotouch/material.h"
 
 static nt_reduced_units units_of(const nt_maugis *maugis)
@@ -26,14 +26,13 @@ static nt_reduced_units units_of(const nt_maugis *maugis)
     return (nt_reduced_units){maugis->load_scale, maugis->radius_scale, maugis->indentation_scale};
 }
 
-/* (non-contact) at d between the fold and the end of the branch; the larger c is the stable one. */
-static nt_law_value non_contact_eval(const nt_maugis *maugis, double d, int stable)
+/* (non-contact) at d between the fold and the end of the branch, the smaller c. */
+static nt_law_value unstable_apart_eval(const nt_maugis *maugis, double d)
 {
     const double c_fold = nt_maugis_apart_fold(maugis->lambda);
     const double beyond_onset = d - maugis->folds.onset_indentation;
     const double root = sqrt(fmax(c_fold * c_fold + 2.0 * beyond_onset, 0.0));
-    const double c = stable ? c_fold + root : -2.0 * beyond_onset / (c_fold + root);
-    return nt_maugis_apart_value(maugis, c, stable ? root : -root);
+    return nt_maugis_apart_value(maugis, -2.0 * beyond_onset / (c_fold + root), -root);
 }
 
 nt_law_value nt_maugis_value_of(const nt_maugis *maugis, const nt_maugis_equilibrium *point, int stable)
@@ -83,84 +82,39 @@ static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_
     return NT_OK;
 }
 
-static nt_status zero_load_find(nt_maugis *maugis, const nt_maugis_equilibrium *load_fold)
-{
-    const nt_maugis_goal goal = {NT_GIVEN_LOAD, 0.0, load_fold, 0, 0.0};
-    nt_maugis_equilibrium point;
-    const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, NULL);
-    if (status != NT_OK)
-        return status;
-    maugis->folds.zero_load_radius = point.a;
-    maugis->folds.zero_load_indentation = point.d;
-    return NT_OK;
-}
-
-/* Folds and ends of both branches; lambda is set. */
-static nt_status folds_find(nt_maugis *maugis)
-{
-    const double lambda = maugis->lambda;
-    nt_maugis_folds *folds = &maugis->folds;
-    nt_maugis_equilibrium touch, grip, pull_off;
-    nt_maugis_equilibrium_at(lambda, 0.0, &touch);
-    nt_status status = nt_maugis_fold_find(lambda, NT_GIVEN_INDENTATION, &grip);
-    if (status == NT_OK)
-        status = nt_maugis_fold_find(lambda, NT_GIVEN_LOAD, &pull_off);
-    if (status != NT_OK)
-        return status;
-    maugis->fold_y = grip.y;
-    maugis->load_fold_y = pull_off.y;
-    const double onset = -2.0 / (NT_PI * lambda), c = nt_maugis_apart_fold(lambda);
-    *folds = (nt_maugis_folds){
-        .pull_off_load = pull_off.P,
-        .pull_off_radius = pull_off.a,
-        .pull_off_indentation = pull_off.d,
-        .grip_in_contact = grip.y > 0.0,
-        .grip_load = grip.y > 0.0 ? grip.P : -0.5 * NT_PI * lambda * c * c,
-        .grip_radius = grip.a,
-        .grip_indentation = grip.y > 0.0 ? grip.d : onset - 0.5 * c * c,
-        .touch_load = touch.P,
-        .touch_indentation = touch.d,
-        .onset_indentation = onset,
-    };
-    return zero_load_find(maugis, &pull_off);
-}
-
 double nt_maugis_lambda(const nt_contact *contact)
 {
-    if (contact->work_of_adhesion == 0.0)
-        return INFINITY;
-    const double K = 4.0 / 3.0 * contact->effective_modulus;
-    const double root_K = cube_root(K);
-    return 2.0 * contact->cohesive_stress / (root_K * root_K) * cube_root(contact->radius) /
-           cube_root(NT_PI * contact->work_of_adhesion);
+    const nt_reduced_units units = nt_reduced_units_of(contact);
+    return contact->work_of_adhesion == 0.0 ? (double)INFINITY : nt_reduced_lambda(contact, &units);
 }
 
 /* Scales and folds of a checked contact. */
-static nt_status prepare(nt_maugis *maugis, const nt_contact *contact, double lambda)
+static nt_status prepare(nt_maugis *maugis, const nt_contact *contact, const nt_reduced_units *units, double lambda)
 {
-    const nt_reduced_units units = nt_reduced_units_of(contact);
-    nt_maugis made = {
-        .lambda = lambda,
-        .load_scale = units.load,
-        .radius_scale = units.radius,
-        .indentation_scale = units.indentation,
-        .contact = *contact,
-    };
-    if (contact->work_of_adhesion > 0.0) {
-        if (!(lambda >= NT_MAUGIS_LAMBDA_MIN && lambda <= NT_MAUGIS_LAMBDA_MAX))
-            return NT_E_RANGE;
-        const nt_status status = folds_find(&made);
-        if (status != NT_OK)
-            return status;
+    const int adheres = contact->work_of_adhesion > 0.0;
+    if (adheres && !(lambda >= NT_MAUGIS_LAMBDA_MIN && lambda <= NT_MAUGIS_LAMBDA_MAX))
+        return NT_E_RANGE;
+    maugis->lambda = adheres ? lambda : HUGE_VAL;
+    maugis->load_scale = units->load;
+    maugis->radius_scale = units->radius;
+    maugis->indentation_scale = units->indentation;
+    maugis->contact = *contact; /* perhaps its own */
+    if (adheres)
+        nt_maugis_folds_find(maugis);
+    else {
+        maugis->folds = (nt_maugis_folds){0};
+        maugis->fold_y = maugis->load_fold_y = 0.0;
     }
-    *maugis = made;
     return NT_OK;
 }
 
 nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact)
 {
     const nt_status status = nt_contact_check(contact, NULL);
-    return status == NT_OK ? prepare(maugis, contact, nt_maugis_lambda(contact)) : status;
+    if (status != NT_OK)
+        return status;
+    const nt_reduced_units units = nt_reduced_units_of(contact);
+    return prepare(maugis, contact, &units, nt_reduced_lambda(contact, &units));
 }
 
 nt_status nt_maugis_init_lambda(nt_maugis *maugis, const nt_contact *contact, double lambda)
@@ -172,8 +126,9 @@ nt_status nt_maugis_init_lambda(nt_maugis *maugis, const nt_contact *contact, do
         return status;
     if (!isfinite(lambda))
         return NT_E_NOT_FINITE;
-    complete.cohesive_stress = lambda / nt_maugis_lambda(&complete);
-    return prepare(maugis, &complete, complete.work_of_adhesion > 0.0 ? lambda : HUGE_VAL);
+    const nt_reduced_units units = nt_reduced_units_of(&complete);
+    complete.cohesive_stress = lambda / nt_reduced_lambda(&complete, &units);
+    return prepare(maugis, &complete, &units, lambda);
 }
 
 /* Hertz: w = 0, or so far in that adhesion is below the last bit. */
@@ -210,7 +165,7 @@ nt_status nt_maugis_eval(const nt_maugis *maugis, double indentation, nt_branch 
     const double d = fmax(indentation / maugis->indentation_scale, folds->grip_indentation); /* rounding only */
     nt_law_value reduced;
     if (folds->grip_in_contact ? !stable && d >= folds->touch_indentation : !stable || d < folds->touch_indentation)
-        reduced = non_contact_eval(maugis, d, stable);
+        reduced = stable ? nt_maugis_apart_stable(maugis, d) : unstable_apart_eval(maugis, d);
     else {
         const nt_status status = contact_eval(maugis, d, stable, &reduced, info);
         if (status != NT_OK)

@@ -11,37 +11,7 @@
 #include <stddef.h>
 
 #include "contact/maugis/newton.h"
-#include "core/roots.h"
 #include "core/same_bits.h"
-
-typedef struct {
-    double lambda;
-    nt_maugis_given given;
-} fold_context;
-
-static double fold_slope(double y, const void *context)
-{
-    const fold_context *fold = context;
-    nt_maugis_equilibrium point;
-    nt_maugis_equilibrium_at(fold->lambda, y, &point);
-    return fold->given == NT_GIVEN_LOAD ? point.P1 : point.d1;
-}
-
-nt_status nt_maugis_fold_find(double lambda, nt_maugis_given given, nt_maugis_equilibrium *fold)
-{
-    const fold_context context = {lambda, given};
-    double y = 0.0;
-    if (fold_slope(0.0, &context) < 0.0) {
-        double bracket[2] = {0.0, nt_maugis_parameter_guess(lambda, 1.5)};
-        for (int i = 0; i < NT_NEWTON_MAX && fold_slope(bracket[1], &context) < 0.0; i++)
-            bracket[1] *= 2.0;
-        const nt_status status = nt_root_find(fold_slope, &context, bracket, &y, NULL);
-        if (status != NT_OK)
-            return status;
-    }
-    nt_maugis_equilibrium_at(lambda, y, fold);
-    return NT_OK;
-}
 
 /* Start above the fold, from the contact radius: exact for JKR and DMT under load, within 25 % otherwise. */
 static double guess_above(double lambda, const nt_maugis_goal *goal, double Z)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Inverting the contact branch of Maugis-Dugdale: its folds, its point at an indentation or load; private. */
+ * Inverting the contact branch of Maugis-Dugdale: its point at an indentation or load; private. */
 #ifndef NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
 #define NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
 
@@ -8,10 +8,6 @@
 
 /* What is given. */
 typedef enum nt_maugis_given { NT_GIVEN_INDENTATION, NT_GIVEN_LOAD } nt_maugis_given;
-
-/* The displacement fold (dd/dy = 0) or the load fold (dP/dy = 0); where there is no displacement fold in contact
- * (lambda < 0.9379) the end of the branch at y = 0 takes its place. */
-nt_status nt_maugis_fold_find(double lambda, nt_maugis_given given, nt_maugis_equilibrium *fold);
 
 /* Which point of the branch is wanted. */
 typedef struct nt_maugis_goal {
