@@ -132,6 +132,7 @@ set(nanotouch_sources_scene
     scene/deformation/adhere.c
     scene/deformation/contact.c
     scene/deformation/follow.c
+    scene/deformation/hold.c
     scene/deformation/law.c
     scene/deformation/layer.c
     scene/deformation/mesh.c

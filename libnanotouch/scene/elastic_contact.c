@@ -200,6 +200,10 @@ double nt_plan_doubt_share(nt_plan *plan, double of_table, double error)
         return 0.0;
     const double from_jump = fmax(1.0 - plan->elastic_number / NT_ELASTIC_JUMP, SAFE);
     plan->deformation.doubt = OF_TABLE / sqrt(from_jump) * of_table * nt_plan_force_scale(plan, 0.0) / pull;
+    if (!plan->visits_contact) {
+        plan->deformation.doubt += nt_elastic_more_of_w(plan); /* as rigid bodies have it */
+        return 0.0;
+    }
     const doubt of = doubt_of(plan, 0.0, plan->deformation.doubt);
     const double fold = shift_by(plan, 0.0, plan->deformation.doubt),
                  farthest = FARTHEST_DOUBT * fabs(plan->release_gap);
@@ -213,6 +217,27 @@ double nt_plan_doubt_share(nt_plan *plan, double of_table, double error)
     return off;
 }
 
+/* What the pressure around a contact loses of the force there, k_c u, as a share of the demand: with 2 E* a of a flat
+ * punch for k_c where that is more than its own. Where places differ, all of the largest k_c over the scale. */
+static double error_of_pressed(const nt_plan *plan)
+{
+    const double u = nt_elastic_under(plan, 0), most = NT_ELASTIC_HALF * others_at_hold(plan).all_F;
+    const double own = plan->maximum_stiffness * u;
+    double worst = 0.0;
+    if (nt_elastic_bluntest(plan) > 1.0 || plan->properties || nt_plan_contact_form(plan) != NT_FORM_EXACT)
+        return fmin(own, most) * nt_elastic_bluntest(plan) / plan->scale;
+    for (int i = 0; i <= 2 * DEPTHS; ++i) {
+        const double d = depth_at(plan, 0.0, 0.0, i);
+        nt_law_value as = {NAN, NAN, NAN, NAN};
+        if (nt_maugis_eval(&plan->maugis, d, NT_BRANCH_STABLE, &as, NULL) != NT_OK)
+            continue;
+        const double k = fmax(as.k, 2.0 * plan->contact.effective_modulus * as.a);
+        const double sum = as.F + nt_plan_beside_at(plan, -d).F;
+        worst = fmax(worst, fmin(k * u, most) / fmax(fabs(sum), plan->scale));
+    }
+    return fmin(NT_SAMPLED * worst, most / plan->scale);
+}
+
 double nt_plan_around_error(const nt_plan *plan, int tails)
 {
     const nt_quantity quantity = plan->quantity;
@@ -222,10 +247,11 @@ double nt_plan_around_error(const nt_plan *plan, int tails)
     const double moved = error_of_contact(plan, nt_elastic_under(plan, 0), more);
     if (quantity == NT_QUANTITY_RADIUS)
         return moved;
+    const double neck = error_of_neck(plan) * nt_elastic_bluntest(plan);
+    if (quantity == NT_QUANTITY_FORCE)
+        return fmax(fmax(error_of_pressed(plan), neck / plan->scale), moved);
     const double pressed =
         fmin(plan->maximum_stiffness * nt_elastic_under(plan, 0), NT_ELASTIC_HALF * others_at_hold(plan).all_F);
-    const double lost = fmax(pressed, error_of_neck(plan)) * nt_elastic_bluntest(plan);
-    if (quantity == NT_QUANTITY_STIFFNESS)
-        return fmax(NT_ELASTIC_SLOPE * lost / plan->length / plan->scale, moved);
-    return fmax(lost / plan->scale, moved);
+    const double lost = fmax(pressed * nt_elastic_bluntest(plan), neck);
+    return fmax(NT_ELASTIC_SLOPE * lost / plan->length / plan->scale, moved);
 }

@@ -73,7 +73,8 @@ static double share_of(const nt_plan *plan, int term)
 double nt_plan_tail_share(const nt_plan *plan)
 {
     double share = 0.0;
-    if (plan->deformation.count > 0)
+    const int is_told = plan->visits_contact || plan->deformation.jumps; /* else a table ends before contact */
+    if (plan->deformation.count > 0 && is_told)
         return nt_plan_deform_share(plan);
     for (int term = 0; term < NT_PLAN_TERMS && plan->source != NT_ADHESION_NONE; ++term)
         share += share_of(plan, term);

@@ -12,9 +12,9 @@
 #define STRICTEST 1e-12
 #define FARTHER 1.25 /* ratio of gaps that are tried, where a sample jumps */
 /* What may be spent on tables [work of nt_deform_tried], so that a refusal takes no more than 0.5 s, at any demand. */
-#define WORK_OF_ONE 500.0 /* plan that is tried */
-#define WORK 1500.0       /* on an accuracy */
-#define WORK_OF_CHANGE 700.0
+#define WORK_OF_ONE 350.0 /* plan that is tried */
+#define WORK 1000.0       /* on an accuracy */
+#define WORK_OF_CHANGE 500.0
 #define OVER_RELIEF 10.0 /* times as much, where each plan makes the tables of many radii */
 enum { SAID = 3, FARTHER_TRIES = 24 };
 

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 
 static nt_plan plan;
@@ -193,6 +194,39 @@ static void any_bound_will_do(void **state)
     assert_true(plan.bound.force_error <= 0.01);
 }
 
+/* Unlike double layers: the surface would jump 30 pm inside the gap where the bodies touch. The forces are those of
+ * nanotouch.reference.deformed, which shares no code with plans, to its last digit here. */
+static void a_surface_that_touches_before_it_jumps_is_planned(void **state)
+{
+    (void)state;
+    static const double truth[][2] = {{1e-9, -1.5049e-8}, {4e-10, -5.2585e-8},      {1.2e-10, -8.4573e-8},
+                                      {0.0, -8.1375e-8},  {-2.5090e-10, 4.1632e-8}, {-8.3633e-10, 6.0087e-7}};
+    const double demands[] = {0.1, 0.03, 0.01, 0.003, 0.001};
+    nt_scene scene = nt_scene_defaults();
+    scene.tip.radius = 7.75747758466504e-06;
+    scene.tip.youngs_modulus = 130e9;
+    scene.tip.poisson_ratio = 0.28;
+    scene.tip.surface_potential = -0.013598718397653767;
+    scene.sample.youngs_modulus = 7423713634.411866;
+    scene.sample.poisson_ratio = 0.2111910147487924;
+    scene.sample.surface_potential = -0.049181819148044474;
+    scene.medium.kind = NT_MEDIUM_LIQUID;
+    scene.medium.ionic_strength = 2.3337125885373227;
+    scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = 0.0;
+    scene.range.maximum_load = 7.146714203136005e-07;
+    for (int i = 0; i < 5; ++i) {
+        nt_problem problem = {0};
+        const nt_interaction_state apart = {0};
+        assert_int_equal(ask_force(&scene, demands[i], &problem), NT_OK);
+        assert_true(plan.bound.force_error <= demands[i]);
+        for (int j = 0; j < 6; ++j) {
+            const double F = nt_interaction_eval_gap(&plan, &apart, NULL, truth[j][0]).F;
+            const double size = fabs(truth[j][1]) > plan.scale ? fabs(truth[j][1]) : plan.scale;
+            assert_true(fabs(F - truth[j][1]) <= (plan.bound.force_error + 3e-5) * size);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -202,6 +236,7 @@ int main(void)
         cmocka_unit_test(one_change_that_is_named_works),
         cmocka_unit_test(an_error_of_zero_is_refused_as_any_other),
         cmocka_unit_test(any_bound_will_do),
+        cmocka_unit_test(a_surface_that_touches_before_it_jumps_is_planned),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,6 +51,17 @@ static int has_others(const nt_plan *plan)
     return 0;
 }
 
+/* Whether the contact with all of w lets go while it has a radius: only such a fold is found on a mesh. */
+static int keeps_radius(const nt_plan *plan)
+{
+    nt_contact contact = plan->contact;
+    nt_maugis whole;
+    const double more = 1.0 + plan->tail / contact.work_of_adhesion; /* h0 stays */
+    contact.work_of_adhesion *= more;
+    contact.cohesive_stress *= more;
+    return nt_maugis_init(&whole, &contact) == NT_OK && whole.folds.grip_in_contact;
+}
+
 int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene)
 {
     const double demanded = plan->accuracy;
@@ -58,7 +69,8 @@ int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene)
         plan->source == NT_ADHESION_SOLID && (scene->medium.kind == NT_MEDIUM_LIQUID || plan->elastic_number > SOFT);
     const int known = scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF && scene->sample.thickness == 0.0 &&
                       nt_plan_contact_form(plan) == NT_FORM_EXACT;
-    return solid && known && has_others(plan) && demanded > 0.0 && plan->around_error > FELT * demanded;
+    const int felt = demanded > 0.0 && plan->around_error > FELT * demanded;
+    return solid && known && felt && has_others(plan) && keeps_radius(plan);
 }
 
 /* Laws act from where adhesion ends, there as at the interatomic distance: inside they keep their force. Adhesion has

@@ -18,6 +18,8 @@ enum { NEWTONS = 40, EDGES = 60, KINKS = 8, SECANTS = 8 };
 #define WIDEST 4.0    /* coarser is not resolved */
 #define SETTLED 1e-11 /* of the gaps */
 #define AHEAD 0.7     /* of a gap, in one step */
+#define LITTLE 0.1    /* of a gap: so small a step leaves slopes as they are */
+#define SLOW 0.1      /* from step to step */
 #define PLACED 1e-3   /* of x: where a kink of the law is */
 #define NEARBY 0.3    /* of a panel: an edge so close to a kink gives way */
 #define LEAST 0.01    /* of the law, in one step on the way to all of it */
@@ -83,50 +85,85 @@ static nt_pressure law_of(const nt_deform_solver *s, int node)
     return p;
 }
 
-/* One step of Newton, at the radius of contact or, `held`, at the h that there is; how far, NaN where it cannot. */
-static double newton_step(nt_deform_solver *s, int held)
+static void press(const nt_deform_solver *s, nt_deform_pressed *p)
+{
+    for (int j = 0; j < s->mesh.count; ++j) {
+        const nt_pressure at = law_of(s, j);
+        p->pressure[j] = at.pressure;
+        p->slope[j] = at.slope;
+    }
+}
+
+/* What is left of the equations: each gap, and the radius of contact or, `held`, the h that there is. */
+static void residual(const nt_deform_solver *s, int held, const nt_deform_pressed *p, double *b)
 {
     const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
-    nt_pressure p[NT_DEFORM_NODES];
-    double b[NT_DEFORM_NODES + 1], ahead = 1.0, far = 0.0, moved = 0.0, u0 = 0.0;
-    for (int j = 0; j < n; ++j)
-        p[j] = law_of(s, j);
+    double slope;
+    for (int i = 0; i < n; ++i)
+        b[i] = s->h + 0.5 * (m->a * m->a + m->x[i]) / s->sample->radius + nt_deform_rim(s, s->h, m->x[i], &slope) +
+               nt_deform_dot(m->K[i], p->pressure, n) - s->gap[i];
+    b[n] = held ? 0.0 : s->h + m->a * m->a / s->sample->radius + nt_deform_dot(m->K0, p->pressure, n);
+}
+
+/* Their slopes, factored; 0 where that cannot be. */
+static int factor(nt_deform_solver *s, int held, const nt_deform_pressed *p)
+{
+    const nt_deform_mesh *m = &s->mesh;
+    const int n = m->count;
     for (int i = 0; i < n; ++i) {
-        double slope, u = nt_deform_rim(s, s->h, m->x[i], &slope);
-        for (int j = 0; j < n; ++j) {
-            u += m->K[i][j] * p[j].pressure;
-            s->A[i][j] = (i == j) - m->K[i][j] * p[j].slope;
-        }
+        double slope;
+        (void)nt_deform_rim(s, s->h, m->x[i], &slope);
+        for (int j = 0; j < n; ++j)
+            s->A[i][j] = (i == j) - m->K[i][j] * p->slope[j];
         s->A[i][n] = -1.0 - slope;
-        b[i] = s->h + 0.5 * (m->a * m->a + m->x[i]) / s->sample->radius + u - s->gap[i];
-        s->A[n][i] = held ? 0.0 : -m->K0[i] * p[i].slope;
-        u0 += m->K0[i] * p[i].pressure;
+        s->A[n][i] = held ? 0.0 : -m->K0[i] * p->slope[i];
     }
     s->A[n][n] = -1.0;
-    b[n] = held ? 0.0 : s->h + m->a * m->a / s->sample->radius + u0;
-    if (!nt_deform_eliminate(s, b, n + 1))
-        return NAN;
-    for (int i = N; i < n; ++i)
+    s->factored = nt_deform_factor(s, n + 1) ? n : 0;
+    s->factored_held = held;
+    return s->factored > 0;
+}
+
+static nt_deform_step newton_step(nt_deform_solver *s, int held, int fresh)
+{
+    const int n = s->mesh.count;
+    const nt_deform_step none = {NAN, NAN};
+    nt_deform_pressed p = {{0.0}, {0.0}};
+    double b[NT_DEFORM_NODES + 1], ahead = 1.0, far = 0.0, near = 0.0, most = 0.0;
+    press(s, &p);
+    residual(s, held, &p, b);
+    if (fresh && !factor(s, held, &p))
+        return none;
+    nt_deform_back(s, b, n + 1);
+    for (int i = N; i < n; ++i) {
+        near = s->gap[i] > 0.0 ? fmax(near, fabs(b[i]) / s->gap[i]) : (double)INFINITY;
         if (-b[i] > AHEAD * s->gap[i])
             ahead = fmin(ahead, AHEAD * s->gap[i] / -b[i]);
+    }
     for (int i = 0; i < n; ++i) {
         s->gap[i] += ahead * b[i];
         far = fmax(far, fabs(s->gap[i]));
-        moved = fmax(moved, fabs(b[i]));
+        most = fmax(most, fabs(b[i]));
     }
     s->h += ahead * b[n];
-    return moved / (far + fabs(s->h));
+    return (nt_deform_step){most / (far + fabs(s->h)), near};
 }
 
+/* Slopes are found again only where the last step changed them much, or did not come much nearer: those of the mesh
+ * before most often do. */
 static nt_status newton(nt_deform_solver *s, int held)
 {
+    int fresh = s->factored != s->mesh.count || s->factored_held != held;
+    double before = INFINITY;
     for (int i = 0; i < NEWTONS; ++i) {
-        const double moved = newton_step(s, held);
-        if (!isfinite(moved))
+        const nt_deform_step by = newton_step(s, held, fresh);
+        if (!isfinite(by.far))
             return NT_E_NO_CONVERGENCE;
-        if (moved < SETTLED)
+        if (by.far < SETTLED)
             return NT_OK;
+        fresh = by.near > LITTLE || by.far > SLOW * before;
+        before = by.far;
     }
     return NT_E_NO_CONVERGENCE;
 }
@@ -248,25 +285,26 @@ int nt_deform_report_contact(nt_deform_solver *s, nt_deform_point *point)
     const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
     const double R = s->sample->radius, E = s->sample->modulus, a = m->a, h = s->h, e = m->edges[1];
-    double y[NT_DEFORM_NODES], slope, F, k, g_h;
+    double y[NT_DEFORM_NODES + 1], slope, F, k, g_h;
+    nt_deform_pressed p = {{0.0}, {0.0}};
+    press(s, &p);
     for (int i = 0; i < n; ++i) {
         (void)nt_deform_rim(s, h, m->x[i], &slope);
         y[i] = 1.0 + slope;
-        for (int j = 0; j < n; ++j)
-            s->A[i][j] = (i == j) - m->K[i][j] * law_of(s, j).slope;
     }
-    if (!nt_deform_eliminate(s, y, n))
+    y[n] = 0.0;
+    if (!factor(s, 1, &p))
         return 0;
+    nt_deform_back(s, y, n + 1);
     const nt_pressure outer = nt_deform_law(s, nt_deform_outer_gap(s));
     F = 2.0 * NT_PI * R * outer.energy + 2.0 * E * a * (-h - a * a / (3.0 * R));
     k = 2.0 * NT_PI * R * outer.pressure + 2.0 * E * a;
     (void)nt_deform_rim(s, h, e, &slope);
     g_h = 1.0 + slope;
     for (int j = 0; j < n; ++j) {
-        const nt_pressure p = law_of(s, j);
-        F += m->load[j] * p.pressure;
-        k -= m->load[j] * p.slope * y[j];
-        g_h += m->K1[j] * p.slope * y[j];
+        F += m->load[j] * p.pressure[j];
+        k -= m->load[j] * p.slope[j] * y[j];
+        g_h += m->K1[j] * p.slope[j] * y[j];
     }
     const double stress = s->sample->stress + nt_deform_law(s, s->sample->range).pressure;
     *point = (nt_deform_point){h, F, k, 0.0, 0.0, a, 0.0};
@@ -285,6 +323,7 @@ nt_status nt_deform_begin_contact(nt_deform_solver *s, const nt_deform_sample *s
     s->end = 2.0 * sample->radius * sample->range;
     s->h = -a * a / sample->radius;
     s->left = MOST_MESHES;
+    s->factored = 0;
     s->share = s->end_slope = 0.0;
     s->mesh.a = a;
     for (int i = 0; i < NT_DEFORM_ENDS; ++i)

@@ -102,6 +102,8 @@ typedef struct nt_deform_solver {
     nt_deform_mesh mesh;
     double gap[NT_DEFORM_NODES]; /* [m] */
     double A[NT_DEFORM_NODES + 1][NT_DEFORM_NODES + 1];
+    int pivot[NT_DEFORM_NODES + 1];
+    int factored, factored_held; /* of a contact: equations less one that A has the factors of, 0: none; held is h */
 } nt_deform_solver;
 #define NT_DEFORM_MESH_WORK 1.0 /* of a full one [work of nt_deform_tried] */
 #define NT_DEFORM_LAYER_WORK 2.0
@@ -127,8 +129,21 @@ static inline double nt_deform_outer_gap(const nt_deform_solver *s)
 
 /* What the pressure in contact does at x outside [m], and its slope in h. */
 double nt_deform_rim(const nt_deform_solver *s, double h, double x, double *slope);
-/* Solves A y = b in place, n x n: Gauss with row pivots; 0 where A is singular, or no work is left. */
+/* Factors A, n x n, in place: Gauss with row pivots; 0 where it is singular, or no work is left. Then solves A y = b in
+ * place. Both. */
+int nt_deform_factor(nt_deform_solver *s, int n);
+void nt_deform_back(const nt_deform_solver *s, double *b, int n);
+double nt_deform_dot(const double *row, const double *by, int n);
 int nt_deform_eliminate(nt_deform_solver *s, double *b, int n);
+
+/* Pressures at the nodes, and their slopes. */
+typedef struct nt_deform_pressed {
+    double pressure[NT_DEFORM_NODES], slope[NT_DEFORM_NODES];
+} nt_deform_pressed;
+/* How far a step of Newton went: over the largest gap, NaN where it cannot; at most of what is left to the pole. */
+typedef struct nt_deform_step {
+    double far, near;
+} nt_deform_step;
 
 /* What an equilibrium is on its mesh. */
 typedef struct nt_deform_state {
@@ -160,7 +175,7 @@ int nt_deform_coarsen(nt_deform_solver *s);
 
 /* Apart, at a gap so large that the sample hardly deforms. */
 nt_status nt_deform_begin(nt_deform_solver *solver, const nt_deform_sample *sample, double gap);
-/* The next equilibrium, not far from the last one; on failure the last one stands. */
+/* The next equilibrium, not far from the last one, and what it is (NULL: not asked); on failure the last one stands. */
 nt_status nt_deform_go(nt_deform_solver *solver, nt_deform_hold hold, double value, nt_deform_point *point);
 
 #define NT_DEFORM_STIFFER 0.05 /* of the tolerance: meshes of a stiffness, whose error grows beside a jump */

@@ -12,7 +12,7 @@
 #include "core/same_bits.h"
 #include "scene/deformation/deform.h"
 
-enum { N = NT_DEFORM_ORDER, NT = 2 * NT_DEFORM_ORDER + 4, PIECES = 6 };
+enum { N = NT_DEFORM_ORDER, NT = 2 * NT_DEFORM_ORDER + 4, PIECES = 6 }; /* NT is a multiple of ROWS */
 
 /* Legendre polynomials 0 .. N - 1 at y in -1..1. */
 static void legendre(double y, double P[N])
@@ -88,26 +88,49 @@ double nt_deform_mesh_at(const nt_deform_mesh *mesh, const double *values, doubl
     return x > last ? sum * sqrt(last / x) : sum;
 }
 
-/* q(tau) of a unit pressure at each node. */
-static void abel_row(const nt_deform_mesh *mesh, const basis *b, double tau, double row[NT_DEFORM_NODES])
+static double sum_of(const double v[N])
 {
-    for (int panel = 0; panel < mesh->panels; ++panel) {
-        const double e0 = mesh->edges[panel], e1 = mesh->edges[panel + 1];
+    return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7]));
+}
+
+/* sums[k] = Sum_i w[i] P_k(y[i]), all points side by side: a mesh takes most of its time here. */
+static void legendre_sums(const double w[N], const double y[N], double sums[N])
+{
+    double before[N], here[N];
+    for (int i = 0; i < N; ++i) {
+        before[i] = w[i];
+        here[i] = w[i] * y[i];
+    }
+    sums[0] = sum_of(before);
+    sums[1] = sum_of(here);
+    for (int k = 2; k < N; ++k) {
+        const double ahead = (2.0 * k - 1.0) / k, behind = (k - 1.0) / k;
+        for (int i = 0; i < N; ++i) {
+            const double next = ahead * y[i] * here[i] - behind * before[i];
+            before[i] = here[i];
+            here[i] = next;
+        }
+        sums[k] = sum_of(here);
+    }
+}
+
+/* q(tau) of a unit pressure at each node of the panels from `first` on; those before it lie inside tau. */
+static void abel_row(const nt_deform_mesh *mesh, const basis *b, double tau, int first, double row[NT_DEFORM_NODES])
+{
+    for (int panel = first; panel < mesh->panels; ++panel) {
+        const double e0 = mesh->edges[panel], e1 = mesh->edges[panel + 1], per_width = 2.0 / (e1 - e0);
         const double low = sqrt(fmax(e0 - tau * tau, 0.0)), high = sqrt(fmax(e1 - tau * tau, 0.0));
-        double c[N] = {0.0};
-        for (int i = 0; i < N && high > 0.0; ++i) {
+        double w[N], y[N], c[N], sum[N] = {0.0};
+        for (int i = 0; i < N; ++i) {
             const double sigma = low + (high - low) * b->x[i];
-            double P[N];
-            legendre(2.0 * (tau * tau + sigma * sigma - e0) / (e1 - e0) - 1.0, P);
-            for (int k = 0; k < N; ++k)
-                c[k] += b->w[i] * (high - low) * P[k];
+            w[i] = b->w[i] * (high - low);
+            y[i] = (tau * tau + sigma * sigma - e0) * per_width - 1.0;
         }
-        for (int j = 0; j < N; ++j) {
-            double sum = 0.0;
-            for (int k = 0; k < N; ++k)
-                sum += c[k] * b->L[k][j];
-            row[panel * N + j] = sum;
-        }
+        legendre_sums(w, y, c);
+        for (int k = 0; k < N; ++k)
+            for (int j = 0; j < N; ++j)
+                sum[j] += c[k] * b->L[k][j];
+        memcpy(row + (size_t)panel * N, sum, sizeof sum);
     }
 }
 
@@ -129,23 +152,32 @@ static nt_deform_spectrum spectrum_of(const nt_deform_sample *sample)
     return s;
 }
 
-/* One t of the quadrature into K (here: of the energy) and load. */
-static void add_row(nt_deform_mesh *mesh, const double row[NT_DEFORM_NODES], double weight)
+/* Some t of the quadrature: their rows, and weights. */
+enum { ROWS = 4 };
+typedef struct rows {
+    double row[ROWS][NT_DEFORM_NODES], weight[ROWS];
+} rows;
+
+/* Into K (here: of the energy) and load, of the nodes from `first` on. */
+static void add_rows(nt_deform_mesh *mesh, const rows *of, int first)
 {
-    for (int i = 0; i < mesh->count; ++i) {
-        const double scaled = weight * row[i];
-        mesh->load[i] += 4.0 * scaled;
-        for (int j = i; j < mesh->count && scaled != 0.0; ++j)
-            mesh->K[i][j] += scaled * row[j];
+    const int count = mesh->count;
+    for (int i = first; i < count; ++i) {
+        double *restrict K = mesh->K[i], scaled[ROWS];
+        for (int k = 0; k < ROWS; ++k)
+            mesh->load[i] += 4.0 * (scaled[k] = of->weight[k] * of->row[k][i]);
+        for (int j = i; j < count; ++j)
+            K[j] += (scaled[0] * of->row[0][j] + scaled[1] * of->row[1][j]) +
+                    (scaled[2] * of->row[2][j] + scaled[3] * of->row[3][j]);
     }
 }
 
 static void add_waves(const nt_deform_mesh *mesh, const nt_deform_spectrum *s, const double row[NT_DEFORM_NODES],
-                      double *waves, const double tw[2])
+                      int first, double *waves, const double tw[2])
 {
     for (int n = 0; n < NT_DEFORM_WAVES; ++n) {
         const double wave = tw[1] * cos(s->k[n] * tw[0]);
-        for (int i = 0; i < mesh->count; ++i)
+        for (int i = first; i < mesh->count; ++i)
             waves[n * NT_DEFORM_NODES + i] += wave * row[i];
     }
 }
@@ -164,7 +196,8 @@ void nt_deform_mesh_make(nt_deform_mesh *mesh, const nt_deform_sample *sample, d
 {
     const basis b = basis_of();
     const int layered = sample->thickness > 0.0;
-    double y[NT], w[NT], row[NT_DEFORM_NODES];
+    double y[NT], w[NT];
+    rows at;
     nt_deform_spectrum s;
     if (layered)
         s = spectrum_of(sample);
@@ -179,22 +212,25 @@ void nt_deform_mesh_make(nt_deform_mesh *mesh, const nt_deform_sample *sample, d
     memset(mesh->push, 0, sizeof mesh->push);
     memset(mesh->under, 0, sizeof mesh->under);
     memset(mesh->under_load, 0, sizeof mesh->under_load);
-    memset(waves, 0, NT_DEFORM_WAVES * NT_DEFORM_NODES * sizeof *waves);
+    if (layered)
+        memset(waves, 0, NT_DEFORM_WAVES * NT_DEFORM_NODES * sizeof *waves);
     for (int panel = 0; panel < mesh->panels; ++panel)
         for (int i = 0; i < NT; ++i) {
             const double span = sqrt(mesh->edges[panel + 1]) - sqrt(mesh->edges[panel]);
             const double tau = sqrt(mesh->edges[panel + 1]) - span * y[i] * y[i], t = hypotenuse(tau, mesh->a);
-            abel_row(mesh, &b, tau, row);
-            const double weight = 2.0 * span * y[i] * w[i] * tau / t;
-            add_row(mesh, row, weight);
+            double *row = at.row[i % ROWS];
+            abel_row(mesh, &b, tau, panel, row);
+            const double weight = at.weight[i % ROWS] = 2.0 * span * y[i] * w[i] * tau / t;
+            if (i % ROWS == ROWS - 1)
+                add_rows(mesh, &at, panel * N);
             for (int j = 0; j < mesh->count && panel == 0 && sample->stress > 0.0; ++j) /* u(r) by Abel */
                 mesh->K1[j] += 4.0 / (NT_PI * sample->modulus) * weight / sqrt(mesh->edges[1] - tau * tau) * row[j];
             if (layered)
-                add_waves(mesh, &s, row, waves, (double[2]){t, weight});
+                add_waves(mesh, &s, row, panel * N, waves, (double[2]){t, weight});
         }
-    abel_row(mesh, &b, 0.0, row);
+    abel_row(mesh, &b, 0.0, 0, at.row[0]);
     for (int i = 0; i < mesh->count; ++i)
-        mesh->K0[i] = 2.0 / sample->modulus * row[i];
+        mesh->K0[i] = 2.0 / sample->modulus * at.row[0][i];
     if (layered)
         nt_deform_layer_add(mesh, sample, &s, waves);
     for (int i = 0; i < mesh->count; ++i)

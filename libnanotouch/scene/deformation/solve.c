@@ -7,13 +7,15 @@
 
 #include "scene/deformation/deform.h"
 
-enum { N = NT_DEFORM_ORDER, STEPS = 40, MESHES = 24, TWICE = 2, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
+enum { N = NT_DEFORM_ORDER, STEPS = 40, SLOPES = 12, MESHES = 24, TWICE = 2, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
 enum { MOST_MESHES = 3000 };  /* of one table, which takes 50 to 800: what comes to no end is told in seconds */
 enum { FULL = HALVINGS / 4 }; /* what a step counts that no mesh resolves, which a shorter one may not cure */
 
 #define CONVERGED 1e-11 /* of the largest gap */
 #define AHEAD 0.7       /* of the way to where a law diverges */
 #define TOLERABLE 10.0  /* times what a panel must resolve */
+#define LITTLE 0.1      /* of a gap: so small a step leaves slopes as they are */
+#define SLOW 0.1        /* from step to step */
 
 double nt_deform_rim(const nt_deform_solver *s, double h, double x, double *slope)
 {
@@ -46,6 +48,20 @@ static void subtract(double *restrict row, const double *restrict by, double fac
         row[j] -= factor * by[j];
 }
 
+/* Four sums side by side. */
+double nt_deform_dot(const double *row, const double *by, int n)
+{
+    enum { BLOCK = 4 };
+    double sum[BLOCK] = {0.0};
+    int j = 0;
+    for (; j + BLOCK <= n; j += BLOCK)
+        for (int k = 0; k < BLOCK; ++k)
+            sum[k] += row[j + k] * by[j + k];
+    for (; j < n; ++j)
+        sum[0] += row[j] * by[j];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
 /* Whether there is work left for n equations. */
 static int may_solve(nt_deform_solver *s, int n)
 {
@@ -56,7 +72,14 @@ static int may_solve(nt_deform_solver *s, int n)
     return *s->work > 0.0;
 }
 
-int nt_deform_eliminate(nt_deform_solver *s, double *b, int n)
+static void swap(double *x, double *y)
+{
+    const double keep = *x;
+    *x = *y;
+    *y = keep;
+}
+
+int nt_deform_factor(nt_deform_solver *s, int n)
 {
     if (!may_solve(s, n))
         return 0;
@@ -67,91 +90,124 @@ int nt_deform_eliminate(nt_deform_solver *s, double *b, int n)
                 best = i;
         if (!(fabs(s->A[best][c]) > 0.0))
             return 0;
-        for (int j = c; j < n && best != c; ++j) {
-            const double swap = s->A[c][j];
-            s->A[c][j] = s->A[best][j];
-            s->A[best][j] = swap;
-        }
-        const double swap = b[c];
-        b[c] = b[best];
-        b[best] = swap;
+        s->pivot[c] = best;
+        for (int j = 0; j < n && best != c; ++j)
+            swap(&s->A[c][j], &s->A[best][j]);
         for (int i = c + 1; i < n; ++i) {
-            const double factor = s->A[i][c] / s->A[c][c];
-            subtract(&s->A[i][c + 1], &s->A[c][c + 1], factor, n - c - 1);
-            b[i] -= factor * b[c];
+            s->A[i][c] /= s->A[c][c];
+            subtract(&s->A[i][c + 1], &s->A[c][c + 1], s->A[i][c], n - c - 1);
         }
     }
-    for (int i = n - 1; i >= 0; --i) {
-        for (int j = i + 1; j < n; ++j)
-            b[i] -= s->A[i][j] * b[j];
-        b[i] /= s->A[i][i];
-    }
+    return 1;
+}
+
+void nt_deform_back(const nt_deform_solver *s, double *b, int n)
+{
+    for (int c = 0; c < n; ++c)
+        swap(&b[c], &b[s->pivot[c]]);
+    for (int i = 1; i < n; ++i)
+        b[i] -= nt_deform_dot(s->A[i], b, i);
+    for (int i = n - 1; i >= 0; --i)
+        b[i] = (b[i] - nt_deform_dot(&s->A[i][i + 1], &b[i + 1], n - i - 1)) / s->A[i][i];
+}
+
+int nt_deform_eliminate(nt_deform_solver *s, double *b, int n)
+{
+    if (!nt_deform_factor(s, n))
+        return 0;
+    nt_deform_back(s, b, n);
     return isfinite(b[0]);
 }
 
-/* The row of what is held, and its residual. */
-static double held(nt_deform_solver *s, nt_deform_hold hold, double value, const nt_pressure *p)
+static void press(const nt_deform_solver *s, nt_deform_pressed *p)
 {
-    const nt_deform_mesh *m = &s->mesh;
-    const int n = m->count;
-    const double sign = hold == NT_DEFORM_CENTRE ? 1.0 : -1.0;
-    double u0 = 0.0;
-    for (int j = 0; j < n; ++j) {
-        u0 += m->K0[j] * p[j].pressure;
-        s->A[n][j] = hold == NT_DEFORM_GAP ? 0.0 : sign * m->K0[j] * p[j].slope;
+    for (int j = 0; j < s->mesh.count; ++j) {
+        const nt_pressure at = nt_deform_law(s, s->gap[j]);
+        p->pressure[j] = at.pressure;
+        p->slope[j] = at.slope;
     }
-    s->A[n][n] = hold == NT_DEFORM_CONTACT ? -1.0 - m->edge[1] : 1.0;
-    if (hold == NT_DEFORM_GAP)
-        return value - s->h;
-    if (hold == NT_DEFORM_CENTRE)
-        return value - s->h - u0;
-    return s->h + m->a * m->a / s->sample->radius + u0 + m->edge[0] + m->edge[1] * s->h;
 }
 
-/* One step of Newton; how far it went over the largest gap, NaN where it cannot. */
-static double newton_step(nt_deform_solver *s, nt_deform_hold hold, double value)
+/* What is left of the equations: each gap, and what is held. */
+static void residual(const nt_deform_solver *s, nt_deform_hold hold, double value, const nt_deform_pressed *p,
+                     double *b)
 {
     const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
-    nt_pressure p[NT_DEFORM_NODES];
-    double b[NT_DEFORM_NODES + 1], ahead = 1.0, far = 0.0, moved = 0.0;
-    for (int j = 0; j < n; ++j)
-        p[j] = nt_deform_law(s, s->gap[j]);
+    const double u0 = nt_deform_dot(m->K0, p->pressure, n);
+    double slope;
+    for (int i = 0; i < n; ++i)
+        b[i] = s->h + 0.5 * (m->a * m->a + m->x[i]) / s->sample->radius + rim_at(s, i, &slope) +
+               nt_deform_dot(m->K[i], p->pressure, n) - s->gap[i];
+    b[n] = value - s->h - (hold == NT_DEFORM_CENTRE ? u0 : 0.0);
+    if (hold == NT_DEFORM_CONTACT)
+        b[n] = s->h + m->a * m->a / s->sample->radius + u0 + m->edge[0] + m->edge[1] * s->h;
+}
+
+/* Their slopes. */
+static void tangent(nt_deform_solver *s, nt_deform_hold hold, const nt_deform_pressed *p)
+{
+    const nt_deform_mesh *m = &s->mesh;
+    const int n = m->count;
+    const double sign = hold == NT_DEFORM_GAP ? 0.0 : hold == NT_DEFORM_CENTRE ? 1.0 : -1.0;
     for (int i = 0; i < n; ++i) {
-        double slope, u = rim_at(s, i, &slope);
-        for (int j = 0; j < n; ++j) {
-            u += m->K[i][j] * p[j].pressure;
-            s->A[i][j] = -m->K[i][j] * p[j].slope;
-        }
+        double slope;
+        (void)rim_at(s, i, &slope);
+        for (int j = 0; j < n; ++j)
+            s->A[i][j] = -m->K[i][j] * p->slope[j];
         s->A[i][i] += 1.0;
         s->A[i][n] = -1.0 - slope;
-        b[i] = s->h + 0.5 * (m->a * m->a + m->x[i]) / s->sample->radius + u - s->gap[i];
+        s->A[n][i] = sign * m->K0[i] * p->slope[i];
     }
-    b[n] = held(s, hold, value, p);
-    if (!nt_deform_eliminate(s, b, n + 1))
-        return NAN;
-    for (int i = 0; i < n; ++i)
-        if (-b[i] > AHEAD * (s->gap[i] - s->sample->pole))
-            ahead = fmin(ahead, AHEAD * (s->gap[i] - s->sample->pole) / -b[i]);
+    s->A[n][n] = hold == NT_DEFORM_CONTACT ? -1.0 - m->edge[1] : 1.0;
+}
+
+/* With the slopes as they are, or not `fresh`, as they were in the last step that was. */
+static nt_deform_step newton_step(nt_deform_solver *s, nt_deform_hold hold, double value, int fresh)
+{
+    const int n = s->mesh.count;
+    const nt_deform_step none = {NAN, NAN};
+    nt_deform_pressed p = {{0.0}, {0.0}};
+    double b[NT_DEFORM_NODES + 1], ahead = 1.0, near = 0.0, far = 0.0, most = 0.0;
+    press(s, &p);
+    residual(s, hold, value, &p, b);
+    if (fresh) {
+        tangent(s, hold, &p);
+        if (!nt_deform_factor(s, n + 1))
+            return none;
+    }
+    nt_deform_back(s, b, n + 1);
+    for (int i = 0; i < n; ++i) {
+        const double left = s->gap[i] - s->sample->pole;
+        near = left > 0.0 ? fmax(near, fabs(b[i]) / left) : (double)INFINITY;
+        if (-b[i] > AHEAD * left)
+            ahead = fmin(ahead, AHEAD * left / -b[i]);
+    }
     for (int i = 0; i < n; ++i) {
         s->gap[i] += ahead * b[i];
         far = fmax(far, fabs(s->gap[i]));
-        moved = fmax(moved, fabs(b[i]));
+        most = fmax(most, fabs(b[i]));
         if (!isfinite(s->gap[i]))
-            return NAN;
+            return none;
     }
     s->h += ahead * b[n];
-    return moved / (far + fabs(s->h));
+    return (nt_deform_step){most / (far + fabs(s->h)), near};
 }
 
+/* Slopes are found again only where the last step changed them much, or did not come much nearer. From a start that is
+ * near enough that takes one to five times; what takes more most often comes to no end. */
 static nt_status newton(nt_deform_solver *s, nt_deform_hold hold, double value)
 {
-    for (int i = 0; i < STEPS; ++i) {
-        const double moved = newton_step(s, hold, value);
-        if (isnan(moved))
+    double before = INFINITY;
+    for (int i = 0, fresh = 1, slopes = 0; i < STEPS && slopes < SLOPES; ++i) {
+        slopes += fresh;
+        const nt_deform_step by = newton_step(s, hold, value, fresh);
+        if (isnan(by.far))
             return NT_E_NO_CONVERGENCE;
-        if (moved < CONVERGED)
+        if (by.far < CONVERGED)
             return NT_OK;
+        fresh = by.near > LITTLE || by.far > SLOW * before;
+        before = by.far;
     }
     return NT_E_NO_CONVERGENCE;
 }
@@ -200,16 +256,15 @@ static int report(nt_deform_solver *s, nt_deform_point *point)
     const nt_deform_mesh *m = &s->mesh;
     const int n = m->count;
     const double R = s->sample->radius, E = s->sample->modulus, a = m->a;
-    nt_pressure p[NT_DEFORM_NODES];
+    nt_deform_pressed p = {{0.0}, {0.0}};
     double y[NT_DEFORM_NODES];
-    for (int j = 0; j < n; ++j)
-        p[j] = nt_deform_law(s, s->gap[j]);
+    press(s, &p);
     for (int i = 0; i < n; ++i) {
         double slope;
         (void)rim_at(s, i, &slope);
         y[i] = 1.0 + slope;
         for (int j = 0; j < n; ++j)
-            s->A[i][j] = (i == j) - m->K[i][j] * p[j].slope;
+            s->A[i][j] = (i == j) - m->K[i][j] * p.slope[j];
     }
     if (!nt_deform_eliminate(s, y, n))
         return 0;
@@ -217,10 +272,10 @@ static int report(nt_deform_solver *s, nt_deform_point *point)
     double F = 2.0 * NT_PI * R * outer.energy, k = 2.0 * NT_PI * R * outer.pressure, u0 = 0.0, u0_slope = 0.0;
     for (int j = 0; j < n; ++j) {
         const double weight = a > 0.0 ? m->load[j] : m->area[j];
-        F += weight * p[j].pressure;
-        k -= weight * p[j].slope * y[j];
-        u0 += m->K0[j] * p[j].pressure;
-        u0_slope += m->K0[j] * p[j].slope * y[j];
+        F += weight * p.pressure[j];
+        k -= weight * p.slope[j] * y[j];
+        u0 += m->K0[j] * p.pressure[j];
+        u0_slope += m->K0[j] * p.slope[j] * y[j];
     }
     *point = (nt_deform_point){s->h, F, k, s->h + u0, 1.0 + u0_slope, a, 0.0};
     if (a > 0.0) {
@@ -295,7 +350,7 @@ nt_status nt_deform_go(nt_deform_solver *s, nt_deform_hold hold, double value, n
             continue;
         }
         if (target == value)
-            return report_of(s, point) ? NT_OK : NT_E_NO_CONVERGENCE;
+            return !point || report_of(s, point) ? NT_OK : NT_E_NO_CONVERGENCE;
         here = target;
         target = value;
     }

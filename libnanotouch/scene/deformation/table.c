@@ -6,36 +6,27 @@
 #include <math.h>
 
 #include "scene/deformation/cubic.h"
+#include "scene/deformation/march.h"
 
 #define FIRST_STEP 0.5 /* of the length over which the law falls */
 #define FIRST_RIM 0.05 /* of sqrt(2 R l): the first radius of contact */
 #define MESH 0.1       /* of the tolerance: what a panel must resolve, which is far more than the error of its force */
 #define SHORTER 0.8    /* steps of the centre gap, over the pole, on the way to a jump */
 #define BEFORE_JUMP 1e-4 /* of that gap: the table ends so much before it */
+#define STILL 1e-8       /* dh/d(centre) in a jump */
 #define TOUCHING 1e-4    /* of the length over which the law falls: a surface that bulges so far touches the tip */
 #define SMALLEST 1e-7    /* of the first step */
-#define UPHILL 0.15      /* steps of ln a on the way to where contact lets go */
-#define BEYOND 0.02      /* of the radius there: the table of contact begins so much farther */
-#define HIGHEST 1e-3     /* of ln a: where that is */
-#define RESOLVED 2.0     /* times the tolerance: energy that the force does not tell */
 #define RISES 2.0        /* d(centre)/dh: the gap under the apex closes so much faster than the bodies approach */
+#define STEEP 30.0       /* the same, where nothing pulls yet */
 #define JUMPS 3.0        /* times the pull at the jump: what a panel resolves, a tolerance of */
 #define NEARER 0.3       /* of a step that is too long for the solver: the next */
 #define WIDER 4.0        /* of the first radius of contact: the next */
 #define PEAKS 0.01       /* of the largest pressure on a layer, which nodes have to tell between them */
 #define KEPT 0.6         /* of the gap under the apex, from point to point */
 
-enum { CLIMB = 60, PARABOLAS = 12, FAILURES = 5, WIDENINGS = 2 };
+enum { NARROWINGS = 40, FAILURES = 5, WIDENINGS = 2 };
 
-typedef struct maker {
-    nt_deform_table *table;
-    nt_deform_solver solver;
-    const nt_deform_range *range;
-    nt_deform_hold hold;
-    double end;  /* of what is held */
-    double pull; /* at the jump [N] */
-    nt_deform_point last;
-} maker;
+typedef nt_deform_maker maker;
 
 static nt_deform_node node_of(const maker *m, int part, const nt_deform_point *point)
 {
@@ -101,14 +92,43 @@ static int leaps(const maker *m, const nt_deform_point *next)
     return centre > -sample->pole && next->centre < KEPT * centre;
 }
 
-/* Where the solver comes to no end, a surface that rises to meet the tip jumps: no finer table passes it. */
-static int jumps_ahead(const maker *m)
+/* Where the solver came to no end, it stands close to a fold if the gap under the apex changes much faster there than
+ * the bodies approach: no finer table passes it, held at the gap of the bodies. */
+static int folds_ahead(maker *m)
 {
-    return m->hold == NT_DEFORM_GAP && m->last.k < 0.0 && m->last.slope > RISES;
+    nt_deform_point near;
+    if (m->hold != NT_DEFORM_GAP)
+        return 0;
+    if (m->last.k < 0.0 && m->last.slope > RISES)
+        return 1;
+    const nt_status status = nt_deform_go(&m->solver, m->hold, m->solver.h, &near);
+    return status == NT_OK && fabs(near.slope) > STEEP;
+}
+
+/* Whether the gap under the apex closes ever faster than the bodies approach before they touch: that is a jump. Held at
+ * that gap, the solver passes either. */
+static int jumps_first(maker *m)
+{
+    static const double left[] = {0.6, 0.3, 0.1, 0.0, 1.0}; /* of that gap; and back */
+    nt_deform_point point = m->last;
+    for (size_t i = 0; i < sizeof left / sizeof *left; ++i)
+        if (nt_deform_go(&m->solver, NT_DEFORM_CENTRE, left[i] * m->last.centre, &point) != NT_OK ||
+            !(point.slope > 0.0))
+            return 1;
+    return 0;
+}
+
+/* Goes on by the gap under the apex, to where the bodies touch. */
+static nt_status march_to_touch(maker *m, int part, double step)
+{
+    m->hold = NT_DEFORM_CENTRE;
+    m->end = 0.0;
+    --m->table->count;
+    return nt_deform_march(m, part, step);
 }
 
 /* Point after point until what is held is at its end, or the range is. */
-static nt_status march(maker *m, int part, double step)
+nt_status nt_deform_march(maker *m, int part, double step)
 {
     const double direction = m->hold == NT_DEFORM_CONTACT ? 1.0 : -1.0, least = SMALLEST * step;
     nt_status status = add(m, node_of(m, part, &m->last));
@@ -126,8 +146,11 @@ static nt_status march(maker *m, int part, double step)
         if (status != NT_OK) { /* too far, as through where the bodies touch; a rim that no mesh resolves */
             const int narrow = m->hold == NT_DEFORM_CONTACT && from == 0.0 && failed < WIDENINGS;
             step = (narrow ? WIDER : NEARER) * fabs(to - from);
+            if (folds_ahead(m))
+                return m->range->attracts || jumps_first(m) ? NT_E_NO_SOLUTION
+                                                            : march_to_touch(m, part, FIRST_STEP * m->last.centre);
             if (step < least || ++failed > FAILURES)
-                return jumps_ahead(m) ? NT_E_NO_SOLUTION : status;
+                return status;
             status = NT_OK;
             continue;
         }
@@ -138,13 +161,8 @@ static nt_status march(maker *m, int part, double step)
             continue;
         }
         if (m->hold == NT_DEFORM_GAP && !m->range->attracts &&
-            (next.centre <= 0.0 || between.centre <= 0.0)) { /* the bodies touch */
-            m->hold = NT_DEFORM_CENTRE;
-            m->end = 0.0;
-            step = m->last.centre;
-            --m->table->count;
-            return march(m, part, step);
-        }
+            (next.centre <= 0.0 || between.centre <= 0.0)) /* the bodies touch */
+            return march_to_touch(m, part, m->last.centre);
         const nt_deform_node ends[2] = {m->table->node[m->table->count - 1], node_of(m, part, &next)};
         if (!(ends[1].v > ends[0].v)) /* back through a fold */
             return NT_E_NO_CONVERGENCE;
@@ -182,38 +200,60 @@ static nt_status end_at_centre(maker *m)
     return m->range->centre > 0.0 ? end_at(m, m->range->centre) : NT_OK;
 }
 
+/* dh/d(centre), which passes through 0 in a jump. */
+static double rise_of(const nt_deform_point *point)
+{
+    return point->slope != 0.0 ? 1.0 / point->slope : -1.0;
+}
+
+/* Between a point before the jump and one behind it, which becomes that of the jump: by false position (Illinois). */
+static nt_status narrow_jump(maker *m, const nt_deform_point *before, nt_deform_point *behind)
+{
+    double high = before->centre, low = behind->centre, f_high = rise_of(before), f_low = rise_of(behind);
+    for (int i = 0; i < NARROWINGS && f_high > 0.0; ++i) {
+        const double middle = (low * f_high - high * f_low) / (f_high - f_low);
+        const nt_status status = nt_deform_go(&m->solver, NT_DEFORM_CENTRE, middle, behind);
+        const double f = rise_of(behind);
+        if (status != NT_OK)
+            return status;
+        if (fabs(f) < STILL)
+            break;
+        *(f > 0.0 ? &high : &low) = middle;
+        f_high = f > 0.0 ? f : 0.5 * f_high;
+        f_low = f > 0.0 ? 0.5 * f_low : f;
+    }
+    return NT_OK;
+}
+
 /* Where the surface jumps: the smallest h over the gap under the apex, which falls all the way. Without a jump before
  * the nearest h the table ends there. */
 static nt_status find_jump(maker *m)
 {
     const double pole = m->solver.sample->pole;
-    double high = m->last.centre, low = high;
-    nt_deform_point point = m->last;
+    nt_deform_point point = m->last, before = point;
+    double low = point.centre;
+    nt_status status = NT_OK;
     while (point.slope > 0.0) {
         if (m->range->centre > 0.0 ? point.centre <= m->range->centre : point.h <= m->range->nearest)
             return end_at_centre(m);
-        high = low;
+        before = point;
         low = pole + SHORTER * (low - pole);
         if (low - pole < TOUCHING * m->solver.sample->length)
             return end_at(m, low);
-        const nt_status status = nt_deform_go(&m->solver, NT_DEFORM_CENTRE, low, &point);
+        status = nt_deform_go(&m->solver, NT_DEFORM_CENTRE, low, &point);
         if (status != NT_OK)
             return status;
     }
-    for (int i = 0; i < 40; ++i) {
-        const double middle = 0.5 * (low + high);
-        const nt_status status = nt_deform_go(&m->solver, NT_DEFORM_CENTRE, middle, &point);
-        if (status != NT_OK)
-            return status;
-        *(point.slope > 0.0 ? &high : &low) = middle;
-    }
+    status = narrow_jump(m, &before, &point);
+    if (status != NT_OK)
+        return status;
     if (m->range->centre > 0.0 ? point.centre <= m->range->centre : point.h <= m->range->nearest)
         return end_at_centre(m);
     m->table->jumps = 1;
     m->table->touch = point.h;
     m->pull = fabs(point.F);
     m->hold = NT_DEFORM_CENTRE;
-    m->end = high + BEFORE_JUMP * (high - pole);
+    m->end = point.centre + BEFORE_JUMP * (point.centre - pole);
     return NT_OK;
 }
 
@@ -249,12 +289,12 @@ static nt_status make_apart(maker *m, double length)
             step = FIRST_STEP * (1.0 - SHORTER) * (m->last.centre - m->solver.sample->pole);
     }
     if (status == NT_OK)
-        status = march(m, m->table->jumps ? -1 : 0, step);
+        status = nt_deform_march(m, m->table->jumps ? -1 : 0, step);
     return status;
 }
 
 /* U of each node; of a contact that holds it begins with `energy`. */
-static void integrate(nt_deform_table *table, double energy)
+void nt_deform_integrate(nt_deform_table *table, double energy)
 {
     for (int i = 0; i < table->count; ++i) {
         const int part = part_of(table, i);
@@ -290,100 +330,10 @@ nt_status nt_deform_table_make(nt_deform_table *table, const nt_deform_sample *s
         m.hold = NT_DEFORM_CONTACT;
         m.end = INFINITY;
         m.last.a = 0.0;
-        status = march(&m, 1, FIRST_RIM * sqrt(2.0 * sample->radius * sample->length));
+        status = nt_deform_march(&m, 1, FIRST_RIM * sqrt(2.0 * sample->radius * sample->length));
     }
     table->first = range->farthest;
     table->last = m.last.h;
-    integrate(table, 0.0);
+    nt_deform_integrate(table, 0.0);
     return status;
-}
-
-/* --- Adhesive contact with what acts around it --- */
-
-static double gap_at(maker *m, double log_radius)
-{
-    nt_deform_point point;
-    return nt_deform_go(&m->solver, NT_DEFORM_CONTACT, exp(log_radius), &point) == NT_OK ? point.h : (double)NAN;
-}
-
-/* Between ln a of which the middle one is highest: by parabolas. */
-static int refine_release(maker *m, double x[3], double h[3])
-{
-    for (int i = 0; i < PARABOLAS; ++i) {
-        const double p = (x[1] - x[0]) * (h[1] - h[2]), q = (x[1] - x[2]) * (h[1] - h[0]);
-        const double left = x[1] - x[0], right = x[1] - x[2];
-        double next = x[1] - 0.5 * (left * p - right * q) / (p - q);
-        if (!(fabs(next - x[1]) > HIGHEST))
-            break;
-        const double there = gap_at(m, next);
-        if (isnan(there))
-            return 0;
-        const int outer = (next - x[1]) * (x[2] - x[1]) > 0.0 ? 2 : 0;
-        if (there > h[1]) {
-            x[2 - outer] = x[1];
-            h[2 - outer] = h[1];
-            x[1] = next;
-            h[1] = there;
-        } else {
-            x[outer] = next;
-            h[outer] = there;
-        }
-    }
-    m->table->release = h[1];
-    return 1;
-}
-
-/* Where contact lets go the gap is largest: uphill in ln a, from a radius; the ln a of it, NaN if there is none. */
-static double find_release(maker *m, double radius)
-{
-    double x[3] = {log(radius) - UPHILL, log(radius), 0.0}, h[3] = {gap_at(m, x[0]), gap_at(m, x[1]), 0.0};
-    if (h[0] > h[1]) {
-        const double at = x[0], gap = h[0];
-        x[0] = x[1];
-        h[0] = h[1];
-        x[1] = at;
-        h[1] = gap;
-    }
-    for (int i = 0; i < CLIMB; ++i) {
-        x[2] = 2.0 * x[1] - x[0];
-        h[2] = gap_at(m, x[2]);
-        if (!(h[2] > h[1]))
-            return !isnan(h[1]) && !isnan(h[2]) && refine_release(m, x, h) ? x[1] : (double)NAN;
-        x[0] = x[1];
-        x[1] = x[2];
-        h[0] = h[1];
-        h[1] = h[2];
-    }
-    return NAN;
-}
-
-/* What the force does over the table is the energy of its ends, unless the mesh does not resolve the pressure. */
-static int is_resolved(const maker *m, double first, double last)
-{
-    const nt_deform_table *table = m->table;
-    const nt_deform_node *from = &table->node[table->apart], *to = &table->node[table->count - 1];
-    const double depth = to->v * to->v - from->v * from->v;
-    const double most = fmax(fmax(fabs(from->F), fabs(to->F)), m->range->scale);
-    return fabs((last - first) - (to->U - from->U)) <= RESOLVED * m->range->tolerance * most * depth;
-}
-
-nt_status nt_deform_table_hold(nt_deform_table *table, const nt_deform_sample *sample, const nt_deform_range *range,
-                               double radius)
-{
-    maker m = {.table = table, .range = range, .hold = NT_DEFORM_CONTACT, .end = INFINITY};
-    m.solver.work = range->work;
-    table->apart = table->count;
-    nt_status status = nt_deform_begin_contact(&m.solver, sample, radius);
-    const double fold = status == NT_OK ? find_release(&m, radius) : (double)NAN;
-    if (isnan(fold))
-        return NT_E_NO_CONVERGENCE;
-    table->holds = 1;
-    status = nt_deform_go(&m.solver, NT_DEFORM_CONTACT, exp(fold + BEYOND), &m.last);
-    const double first = nt_deform_energy_in_contact(&m.solver);
-    if (status == NT_OK)
-        status = march(&m, 1, BEYOND * exp(fold));
-    table->last = m.last.h;
-    integrate(table, first);
-    return status == NT_OK && !is_resolved(&m, first, nt_deform_energy_in_contact(&m.solver)) ? NT_E_NO_CONVERGENCE
-                                                                                              : status;
 }
