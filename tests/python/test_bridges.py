@@ -23,6 +23,7 @@ from nanotouch_app.devices import bridge, calibration, guide, hand, launch, tabl
 from nanotouch_app.live import device as live
 from nanotouch_app.live.subject import of_preset
 from nanotouch_app.main import main
+from pages import MOTOR, visited
 
 pytest.importorskip("aiohttp")
 
@@ -94,42 +95,56 @@ def omega(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[OnDesk]:
         yield found
 
 
-def test_one_command_from_the_desk_to_a_recorded_force(
+def test_one_command_from_the_desk_to_a_recorded_force_watched_by_a_page(
     omega: OnDesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without a display the terminal shows the force; Ctrl-C ends it, and the recording is whole."""
+    """Without a display a page shows the force; Ctrl-C ends it, and the recording is whole."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     turned = calibration.Calibration(axes=((0.0, 1.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), friction=0.1)
     monkeypatch.setattr(guide, "calibrate", lambda *_: turned)
+    page, out = tmp_path / "page.html", tmp_path / "touch.mcap"
+    page.write_bytes(b"<!doctype html><title>page</title>")
+    said, seen, ended = [""], [], threading.Event()
 
-    ended = threading.Event()
+    def links() -> list[str]:
+        said[0] += capsys.readouterr().out
+        return re.findall(r"http:\S+", said[0]) if "Ctrl-C ends the session.\n" in said[0] else []
 
     def hand() -> None:
         """Down by 1 cm/s until it is felt: the surface is 5 mm below where it was when the session began to push."""
-        awaited(lambda: omega.size > 0.0, "the session runs")
-        begun = time.monotonic()
-        while omega.pressed() > -0.5 and (elapsed := time.monotonic() - begun) < 20.0:
-            omega.hold("down", 0.01 * elapsed)
-            time.sleep(0.01)
-        if not ended.wait(0.5):
-            signal.raise_signal(signal.SIGINT)
+        try:
+            awaited(links, "the links")
+            awaited(lambda: omega.size > 0.0, "the session runs")
+            begun = time.monotonic()
 
-    person = threading.Timer(1.0, hand)
+            def taken(update: tuple[Any, ...]) -> bool:
+                omega.hold("down", min(0.01 * (time.monotonic() - begun), 0.05))
+                return bool(update[MOTOR] < -0.5)
+
+            seen.extend(visited(links()[1], taken))
+        finally:
+            if not ended.wait(0.3):
+                signal.raise_signal(signal.SIGINT)
+
+    person = threading.Thread(target=hand)
     person.start()
-    out = tmp_path / "touch.mcap"
-    status = main(["live", "--hand", "forcedimension", "--record", str(out), "--calibrate"])
+    options = ["--record", str(out), "--calibrate", "--browser", "--page", str(page)]
+    status = main(["live", "--hand", "forcedimension", *options])
     ended.set()
     person.join()
-    said, errors = capsys.readouterr()
-    assert status == 128 + signal.SIGINT, errors
-    assert "Force Dimension: leads the hand, at wall pace" in said
-    assert "force on the hand at most 5 N" in said
-    assert "below 0.10 N friction holds it" in said
+    captured = capsys.readouterr()
+    told = said[0] + captured.out
+    assert status == 128 + signal.SIGINT, captured.err
+    assert "Force Dimension: leads the hand, at wall pace" in told
+    assert "force on the hand at most 5 N" in told
+    assert "below 0.10 N friction holds it" in told
     assert calibration.read(calibration.path_of("forcedimension")) == turned
-    assert "first force" in said, said
-    (seconds,) = re.findall(r"first force on the hand ([\d.]+) s after the command", said)
+    (seconds,) = re.findall(r"first force on the hand ([\d.]+) s after the command", told)
     assert float(seconds) < 60.0
+    (world,) = [message for message in seen if message["tell"] == "world"]
+    assert world["source"] == "watched: its program leads the hand"
+    assert any(message["tell"] == "clock" and message["recorded"] for message in seen)
     recording = nt.record.read(out)
     assert "incomplete" not in recording.metadata
     assert recording.motor_force.min() < -0.3

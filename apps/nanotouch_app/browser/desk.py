@@ -15,8 +15,11 @@ from nanotouch_app.live.serving import serve
 class BrowserDesk:
     """What a window's desk is, for pages."""
 
-    def __init__(self, topography: Topography, page: bytes, port: int = 0) -> None:
+    def __init__(
+        self, topography: Topography, page: bytes, port: int = 0, corner: tuple[float, float] = (0.0, 0.0)
+    ) -> None:  # fmt: skip
         self.server = Server(page, port)
+        self.server.readers.corner = corner
         self.asked = self.server.asked
         self.topography = topography
         self.server.readers.surface = surface_bytes(topography.heights, topography.pixel_size)
@@ -29,10 +32,10 @@ class BrowserDesk:
         """There is nothing to wait for."""
         return self.links()
 
-    def links(self) -> str:
-        """In words, for the terminal."""
+    def links(self, does: str = "touch it") -> str:
+        """In words, for the terminal; ``does``: what the first one is for."""
         server, keys = self.server, self.server.keys
-        return (f"touch it (this link works once):\n  {server.link(keys.operate)}\n"
+        return (f"{does} (this link works once):\n  {server.link(keys.operate)}\n"
                 f"watch it (any number):\n  {server.link(keys.watch)}\n"
                 f"from another machine: ssh -L {server.port}:localhost:{server.port} THIS_MACHINE, "
                 "then the same links there\n"

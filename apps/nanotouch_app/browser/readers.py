@@ -12,8 +12,10 @@ import nanotouch as nt
 from nanotouch.errors import Error
 
 from nanotouch_app.browser.update import Summary, message_text
+from nanotouch_app.live.reel import measured
 
 Message = dict[str, Any]
+SIMULATED = "simulated, wall pace, seen over a socket"
 KEPT = ("sliders", "world", "guide", "dents", "task", "particles")  # sent again to a page that joins later
 
 
@@ -35,6 +37,7 @@ class Readers:
         self.all: list[Reader] = []
         self.kept: dict[str, Message] = {}
         self.surface = b""
+        self.corner = (0.0, 0.0)  # of the surface in the frame of the tip [m]
         self.observer: nt.frames.Observer | None = None
         self.name = ""
         self.touched = False
@@ -53,9 +56,12 @@ class Readers:
         """The updates that are due now."""
         if self.observer is None:
             return []
-        frames = self.observer.read()
+        frames = measured(self.observer.read(), self.kept.get("world", {}))
         if not len(frames):
             return []
+        if any(self.corner):  # a page counts from the corner
+            frames = frames.copy()
+            frames["tip_position"][:, :2] -= self.corner
         part = Summary.of(frames, self.touched)
         self.touched = bool(frames[-1]["contact_radius"] > 0.0)
         due = []
@@ -88,7 +94,7 @@ class Readers:
                 self.attach(message["name"])
             except Error:
                 self.observer = None
-            message = {**message, "source": "simulated, wall pace, seen over a socket"}
+            message = {"source": SIMULATED, **message}
         if kind in KEPT:
             self.kept[kind] = message
         text = message_text(message)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``nanotouch live --hand DEVICE``: a haptic device leads the hand over a simulated sample, at wall pace. Its bridge is
-started here and ended with the session; a window shows the touch where there is a display, else the terminal does."""
+started here and ended with the session; pages show the touch, or a window where there is a display, or the terminal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from subprocess import Popen
 from typing import Any
 
 import nanotouch as nt
@@ -24,11 +23,10 @@ from nanotouch_app.common import output, stop
 from nanotouch_app.devices import calibration, guide
 from nanotouch_app.devices.launch import Launched, first
 from nanotouch_app.devices.table import DEVICES, Device
-from nanotouch_app.live import display
+from nanotouch_app.live import display, shown
 from nanotouch_app.live.hands import KINDS
 from nanotouch_app.live.subject import Subject
 
-USELESS = ("task", "film", "browser", "port", "page", "dark")
 BLOCK, ROWS = 5000, 65536  # rows that are kept at a time; blocks of them that no ring holds
 TURN, LINE = 0.02, 1.0  # of the loop; between two lines [s]
 FELT = 0.3  # a force that a hand feels [N]
@@ -44,9 +42,7 @@ def is_named(name: str) -> bool:
 
 def touch(args: argparse.Namespace, subject: Callable[[], Subject]) -> int:
     """Until the person leaves: Q in the window, Ctrl-C in the terminal."""
-    useless = [f"--{name}" for name in USELESS if getattr(args, name) not in (None, False)]
-    if useless:
-        raise InvalidValue(f"--hand {args.hand} is a haptic device: {' and '.join(useless)} cannot be used with it")
+    shown.check(args, f"--hand {args.hand} is a haptic device")
     (name, _, option), begun = args.hand.partition(":"), time.monotonic()
     device = DEVICES.get(name)
     if args.calibrate and device is None:
@@ -61,15 +57,15 @@ def touch(args: argparse.Namespace, subject: Callable[[], Subject]) -> int:
         stack.callback(session.halt)
         session.publish(f"hand-{os.getpid()}")
         keeps = None if args.record is None else stack.enter_context(record.Writer(args.record, session.metadata()))
-        window = _window(session)
-        if window is not None:
-            stack.callback(_end, window)
-        _say(session, device, window is not None)
+        view = _view(session, args)
+        if view is not None:
+            stack.callback(view.close)
+        _say(session, device, view)
         with first():
             session.start("wall")
         with stop.between_blocks() as check:
             try:
-                for _ in _turns(session, bridge, window, begun):
+                for _ in _turns(session, bridge, view, begun):
                     _keep(session, keeps)
                     check()
             finally:  # whatever ends it: the recording is whole
@@ -119,42 +115,43 @@ def opened(subject: Subject, device: Device | None, mailbox: str, recorded: bool
         ) from error
 
 
-def _window(session: nt.Session) -> Popen[str] | None:
-    """One that watches, where there is a display."""
-    try:
-        display.check()
-    except Error:
-        output.say("no display: the touch is shown here")
-        return None
-    return session.live()
+def _view(session: nt.Session, args: argparse.Namespace) -> shown.Shown | None:
+    """Pages where they are asked for, a window where there is a display; either leads what the device does not."""
+    if not args.browser:
+        try:
+            display.check()
+        except Error:
+            output.say("no display: the touch is shown here")
+            return None
+    return shown.Shown(session, args, shown.leads_of(session, by_device=True))
 
 
-def _say(session: nt.Session, device: Device | None, is_shown: bool) -> None:
-    leave = "Q in the window leaves, Escape stops" if is_shown else "Ctrl-C ends the session"
+def _say(session: nt.Session, device: Device | None, view: shown.Shown | None) -> None:
     title = OWN if device is None else device.title
-    print(f"{title}: leads the hand, at wall pace, for the sample is simulated; {leave}", flush=True)
-    print(session.guarantee().hand, flush=True)
+    hand = "z, your mouse x and y" if view is not None and view.leads else "the hand"
+    leave = "Ctrl-C ends the session" if view is None else view.leave
+    print(f"{title}: leads {hand}, at wall pace, for the sample is simulated; {leave}", flush=True)
+    for line in filter(None, (session.guarantee().hand, view and view.words)):
+        print(line, flush=True)
 
 
-def _turns(session: nt.Session, bridge: Launched | None, window: Popen[str] | None, begun: float) -> Iterator[None]:
+def _turns(session: nt.Session, bridge: Launched | None, view: shown.Shown | None, begun: float) -> Iterator[None]:
     """Look after the bridge and show the force, until somebody leaves; each turn leaves time for what else is to do."""
     with nt.frames.attach(session._name) as frames:
         is_felt, due = False, 0.0
-        while window is None or window.poll() is None:
+        while view is None or view.is_open():
             since = frames.read()
             if len(since):
                 frame = since[-1]
                 if not is_felt and np.abs(since["motor_force"][:, 2]).max() > FELT:
                     is_felt = True
                     print(f"first force on the hand {time.monotonic() - begun:.1f} s after the command", flush=True)
-                if window is None and time.monotonic() > due:
+                if view is None and time.monotonic() > due:
                     due = time.monotonic() + LINE
                     print(line(frame, session), flush=True)
             yield
             _check(session, bridge)
             time.sleep(TURN)
-        if window is not None and window.poll():
-            raise Error("the window has died; the session has ended in order")
 
 
 def line(frame: Any, session: nt.Session) -> str:
@@ -186,8 +183,3 @@ def _check(session: nt.Session, bridge: Launched | None) -> None:
         raise DeviceError(
             "the program of the device does not answer any more; its force is gone. Start the command again"
         )
-
-
-def _end(window: Popen[str]) -> None:
-    if window.poll() is None and window.stdin is not None:
-        window.stdin.close()

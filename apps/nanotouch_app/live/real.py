@@ -1,26 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``nanotouch live RIG.toml``: a session on the real halves that a rig file names, at the pace that these ask for. A
-window shows it, and leads the hand where no device does."""
+window or pages show it, and lead the hand where no device does."""
 
 from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
-from subprocess import Popen
-from typing import Any
 
 import nanotouch as nt
 from nanotouch import record, rig_file
-from nanotouch.errors import Error, InvalidValue
 from nanotouch.scene import read_tables
 from nanotouch.touch.options import PACE_REASONS
 from nanotouch.touch.session import settings_for_path
 
-from nanotouch_app.live import display
+from nanotouch_app.common import stop
+from nanotouch_app.live import display, shown
 
-USELESS = ("task", "film", "browser", "port", "page", "radius", "spring_constant", "dark")
-BLOCK, TURN = 5000, 0.05  # rows at once; between two looks at the window [s]
+BLOCK, TURN = 5000, 0.05  # rows at once; between two looks at the view [s]
 MOUSE = {"motor": False, "gauge": False}  # of a hand that is led by a window: nothing pushes it
 
 
@@ -32,49 +31,51 @@ def is_named(what: str) -> bool:
 
 def touch(args: argparse.Namespace) -> int:
     """Until the person leaves: Q in the window, Ctrl-C in the terminal."""
-    useless = [f"--{name.replace('_', '-')}" for name in USELESS if getattr(args, name) not in (None, False)]
-    if useless:
-        raise InvalidValue(f"{args.what} names a real half: {' and '.join(useless)} cannot be used with it")
+    shown.check(args, f"{args.what} names a real half", "radius", "spring_constant")
     path = Path(args.what)
     file = rig_file.read(path, allow_code=args.allow_code)
-    display.check()
-    session, leads = opened(file, path.parent, args.record is not None)
-    sideways = not leads and session.rig.master.axes == 1.0 and session.rig.stage.axes == 3.0
-    window = session.live(hand="sideways" if sideways else leads)
+    if not args.browser:
+        display.check()
+    session, is_led = opened(file, path.parent, args.record is not None)
+    leads = shown.leads_of(session, by_device=not is_led)
+    view = shown.Shown(session, args, leads)
     try:
         session.start()
-        hand = ("your mouse leads the hand" if leads else "its device leads z, your mouse x and y" if sideways
-                else "its device leads the hand, the window watches")  # fmt: skip
+        hand = {True: "your mouse leads the hand", "sideways": "its device leads z, your mouse x and y",
+                False: "its device leads the hand, the view watches"}[leads]  # fmt: skip
         pace = PACE_REASONS["hard" if session.pace == "hard" else "wall"]
-        print(f"{path.name}: {pace}; {hand}; Q in the window leaves, Escape stops", flush=True)
-        print(session.guarantee().hand, flush=True)
-        if _kept(session, window, args.record):
-            raise Error("the window has died; the session has ended in order")
+        print(f"{path.name}: {pace}; {hand}; {view.leave}", flush=True)
+        for line in filter(None, (session.guarantee().hand, view.words)):
+            print(line, flush=True)
+        with stop.between_blocks() as check:
+            _kept(session, view, args.record, check)
     finally:
         session.halt()
-        _end(window)
+        view.close()
     return 0
 
 
-def _kept(session: nt.Session, window: Popen[Any], path: str | None) -> int:
-    """Until the window has gone, what it ended with; meanwhile what happens is kept, the last of it after the halt."""
-    if path is None:
-        return window.wait()
-    with record.Writer(path, session.metadata()) as writer:
+def _kept(session: nt.Session, view: shown.Shown, path: str | None, check: Callable[[], None]) -> None:
+    """Until the person has left; meanwhile what happens is kept, the last of it after the halt."""
+    with ExitStack() as stack:
+        writer = None if path is None else stack.enter_context(record.Writer(path, session.metadata()))
         try:
-            while window.poll() is None:
+            while view.is_open():
+                check()
                 if not _drain(session, writer):
                     time.sleep(TURN)
         finally:
             session.halt()
             while _drain(session, writer):
                 pass
-            writer.update(session.metadata())
-    return int(window.returncode)
+            if writer is not None:
+                writer.update(session.metadata())
 
 
-def _drain(session: nt.Session, writer: record.Writer) -> bool:
+def _drain(session: nt.Session, writer: record.Writer | None) -> bool:
     """Whether there was something."""
+    if writer is None:
+        return False
     block = session.read(BLOCK)
     if len(block["time"]):
         writer.append(block)
@@ -99,10 +100,3 @@ def opened(file: rig_file.RigFile, folder: Path, recorded: bool = False) -> tupl
     session = nt.Session(scene, rig, surface=surface, settings=settings, master=file.master, slave=file.slave,
                          recorded=recorded)  # fmt: skip
     return session, leads
-
-
-def _end(window: Popen[Any]) -> None:
-    """It leaves when its input ends."""
-    if window.poll() is None and window.stdin is not None:
-        window.stdin.close()
-        window.wait(5.0)

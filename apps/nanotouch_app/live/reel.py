@@ -41,6 +41,22 @@ def frames_of(recording: Recording) -> Any:
     return frames
 
 
+def measured(frames: Any, world: Mapping[str, Any]) -> Any:
+    """What a real slave does not say is what its lever and stage measure; gap and contact stay unknown."""
+    unknown = ~np.isfinite(frames["tip_force"][:, 2])
+    if not (world and unknown.any()):
+        return frames
+    made, rows = frames.copy(), np.flatnonzero(unknown)
+    lever = float(world["rig"]["probe"]["spring_constant"])
+    made["tip_force"][rows, 2] = lever * made["deflection"][rows]
+    stands = (*world.get("start", (0.0, 0.0)), 0.0)
+    heights = made["base_height"] + made["deflection"]
+    for axis in range(3):
+        lost = rows[~np.isfinite(made["tip_position"][rows, axis])]
+        made["tip_position"][lost, axis] = np.nan_to_num(heights[lost]) if axis == 2 else stands[axis]
+    return made
+
+
 class Reel:
     """Frames of a recording between the last look and now."""
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from nanotouch_app.live import dented
 from nanotouch_app.live.hands.device import Feel
-from nanotouch_app.live.reel import Reel, demand_of
+from nanotouch_app.live.reel import Reel, demand_of, measured
 
 Floats = NDArray[np.float64]
 
@@ -173,7 +173,7 @@ class Seen:
         if not len(frames):
             return
         self.arrived = now
-        frames = self._measured(frames)
+        frames = measured(frames, self.world)
         if self.frame is not None and frames["time"][0] < float(self.frame["time"]):  # rewound
             self.forget()
         self._keep(frames)
@@ -189,21 +189,6 @@ class Seen:
         self.dented.follow(frames)
         if (now := (self.dented.began, self.dented.reached)) != self.drawn_dent:
             self.drawn_dent, self.curve = now, self.dented.curve(11.0 * self.reach)
-
-    def _measured(self, frames: Any) -> Any:
-        """What a real slave does not say is what its lever and stage measure; gap and contact stay unknown."""
-        unknown = ~np.isfinite(frames["tip_force"][:, 2])
-        if not (self.world and unknown.any()):
-            return frames
-        made, rows = frames.copy(), np.flatnonzero(unknown)
-        lever = float(self.world["rig"]["probe"]["spring_constant"])
-        made["tip_force"][rows, 2] = lever * made["deflection"][rows]
-        stands = (*self.world.get("start", (0.0, 0.0)), 0.0)
-        heights = made["base_height"] + made["deflection"]
-        for axis in range(3):
-            lost = rows[~np.isfinite(made["tip_position"][rows, axis])]
-            made["tip_position"][lost, axis] = np.nan_to_num(heights[lost]) if axis == 2 else stands[axis]
-        return made
 
     @property
     def is_blind(self) -> bool:

@@ -27,13 +27,14 @@ export class ForceGap {
   draw(seen, palette) {
     const { painter } = this, { now, law } = seen;
     if (!painter.begin(palette.panel) || !now || !law || !seen.world) return;
+    const gap = seen.blind ? 0 : now.gap; // an axis does not follow what is not known
     const { facts, curve } = law, pull = facts.pull_off_force, { load } = seen;
     const recent = seen.tail.map((row) => row.force), most = Math.max(0, ...recent), least = Math.min(0, ...recent);
     const top = this.up.of(Math.max(1.3 * pull, 1.15 * most, 0.02 * load), now.time);
-    const reach = this.out.of(Math.max(law.reach, 1.1 * Math.min(now.gap, 3.9 * law.reach)), now.time);
+    const reach = this.out.of(Math.max(law.reach, 1.1 * Math.min(gap, 3.9 * law.reach)), now.time);
     let deep = 0;
     for (let i = 0; i < curve.attached.length; i += 2) if (curve.attached[i + 1] >= top) deep = -curve.attached[i];
-    const inner = -Math.max(0.25 * reach, 1.2 * Math.min(deep, 1.5 * facts.largest_indentation), -1.1 * now.gap || 0);
+    const inner = -Math.max(0.25 * reach, 1.2 * Math.min(deep, 1.5 * facts.largest_indentation), -1.1 * gap);
     const low = -this.down.of(Math.max(1.3 * pull, -1.15 * least, 0.1 * top), now.time);
     const axes = new Axes(painter, [inner, reach], [low, top]);
     axes.draw(palette, ["gap", "force on the tip"], ["m", "N"]);

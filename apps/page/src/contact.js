@@ -6,6 +6,7 @@ import { digits, stepUp } from "./units.js";
 
 const POINTS = 90, HEADING = 30, MENISCUS = 2, MORE = 1.4; // beyond the frame, which zooms meanwhile
 const LEVEL = 0.58; // of the undeformed sample in its frame, from above
+const BLIND = "not known of a real slave, which measures a force alone";
 
 const inDent = ({ depth, radius, yieldLoad }) => (depth > 0
   ? `dent ${digits(depth, "m")} deep, ${digits(2 * radius, "m")} wide` : `elastic up to ${digits(yieldLoad, "N")}`);
@@ -55,7 +56,7 @@ export class Contact {
 
   // Into a frame; where it lies: [pixels per m], the middle, the undeformed sample. Nothing while nothing is known.
   draw(painter, { left, top, width, height }, seen, palette, still) {
-    if (!seen.now || !seen.law || !seen.world) return null;
+    if (!seen.now || !seen.law || !seen.world || seen.blind) return null;
     this.#zoom(seen, still, width / height);
     this.#renew(seen);
     if (!this.section) return null;
@@ -118,6 +119,7 @@ export class ContactPanel {
     const frame = { left: 0, top: HEADING, width: painter.width, height: painter.height - HEADING };
     const view = this.contact.draw(painter, frame, seen, palette, still);
     if (view) this.#words(seen, palette, view);
+    else if (seen.blind) painter.text(painter.width / 2, painter.height / 2, BLIND, palette.quiet, { align: "center" });
   }
 
   #words(seen, palette, { scale, level, middle }) {

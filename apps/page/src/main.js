@@ -91,6 +91,7 @@ function hear(message) {
   if (message.tell === "world") {
     sliders.take(message);
     stage.mount(message.scene.tip);
+    document.body.classList.toggle("watched", Boolean(message.watched)); // no samples, tasks or pauses of another program
     if (task && state.own) ask({ do: "task", name: task, lay: true });
     task = null;
   }

@@ -22,7 +22,7 @@ export class Overlay {
     this.#proxy(seen, stage, palette);
     this.#scales(stage, palette);
     if (all) this.#bars(seen, palette);
-    if (seen.hides.has("contact") || seen.hides.has("surface")) return false;
+    if (seen.hides.has("contact") || seen.hides.has("surface") || seen.blind) return false;
     return this.lens.draw(painter, seen, stage.pixel(stage.apex(seen.now)), palette, { still, below: all ? BARS : 0 });
   }
 

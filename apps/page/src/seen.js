@@ -135,6 +135,8 @@ export class Seen {
   }
 
   get hides() { return new Set(this.task.hides ?? []); }
+  // The gap is not known: the slave is a real one.
+  get blind() { return Boolean(this.now) && !Number.isFinite(this.now.gap); }
   get age() { return (performance.now() - this.arrived) / 1000; }
   get stale() { return this.age > this.constants.STALE && !this.clock.paused; }
   get force() {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Starts the window that watches a session. It is a program beside this library, and runs in a process of its own."""
+"""Starts a view that watches a session. It is a program beside this library, and runs in a process of its own."""
 
 from __future__ import annotations
 
@@ -44,7 +44,14 @@ def watch(session: Watched, hand: bool | Literal["sideways"] = False) -> subproc
     """
     if importlib.util.find_spec("vtkmodules") is None:
         raise missing("vtk", "view")
-    if not session._name:  # a second window watches beside the first one
+    options = ["--sideways"] if hand == "sideways" else ["--lead", "--hand", "auto"] if hand else []
+    return viewed(session, WINDOW, options)[0]
+
+
+def viewed(session: Watched, view: str, options: list[str]) -> tuple[subprocess.Popen[str], str]:
+    """The process of a view, and the line that it says once it shows something; :class:`~nanotouch.errors.Error` with
+    its last words where it cannot."""
+    if not session._name:  # a second view watches beside the first one
         session.publish(f"session-{os.getpid()}-{next(_numbers)}")
     name = session._name
     folder = Scratch()
@@ -53,22 +60,22 @@ def watch(session: Watched, hand: bool | Literal["sideways"] = False) -> subproc
     heights, pixel_size, origin = _surface_of(session)
     np.savez(surface, heights=heights, pixel_size=np.asarray(pixel_size), origin=np.asarray(origin))
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    options = ["--sideways"] if hand == "sideways" else ["--lead", "--hand", "auto"] if hand else []
     said = folder.path / "said.txt"
     with open(said, "wb") as errors:
-        window = subprocess.Popen(
-            [sys.executable, "-P", "-m", WINDOW, str(surface), "--watch", name, *options], stdin=subprocess.PIPE,
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-m", view, str(surface), "--watch", name, *options], stdin=subprocess.PIPE,
             stdout=subprocess.PIPE, stderr=errors, env=environment, text=True,
         )  # fmt: skip
-    assert window.stdout is not None
-    if not window.stdout.readline():  # it has ended
-        window.wait()
-        for wire in (window.stdin, window.stdout):
+    assert process.stdout is not None
+    first = next((line for line in process.stdout if line.startswith("{")), "")  # others are a library's own
+    if not first:  # it has ended
+        process.wait()
+        for wire in (process.stdin, process.stdout):
             if wire is not None:
                 wire.close()
         last = said.read_text(errors="replace").strip().splitlines() or ["it said nothing"]
-        raise Error(f"the window could not be opened: {last[-1]}")
-    return window
+        raise Error(f"the view could not be opened: {last[-1]}")
+    return process, first
 
 
 def _surface_of(session: Watched) -> tuple[Any, tuple[float, float], tuple[float, float]]:
