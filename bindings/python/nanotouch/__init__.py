@@ -34,6 +34,7 @@ _HOMES = {
     "Scene": "scene",
     "Settings": "scene",
     "Session": "touch.session",
+    "Sessions": "touch.sessions",
     "SlowFlow": "scan.flow",
     "Steady": "scan.steady",
     "Supervisor": "touch.supervisor",
@@ -48,7 +49,7 @@ _ROOMS = {
     "contact.": "geometry",
     "scan.": "flow scanner steady tapping",
     "scene.": "interaction materials plan presets surface surface_file view",
-    "touch.": "c_header commands faults frames hal mailbox margins operator raster record rig_file session",
+    "touch.": "c_header commands faults frames hal mailbox margins operator raster record rig_file session sessions",
 }
 _MODULES = {name: room + name for room, names in _ROOMS.items() for name in names.split()}
 

@@ -71,10 +71,12 @@ from nanotouch.touch import raster as raster
 from nanotouch.touch import record as record
 from nanotouch.touch import rig_file as rig_file
 from nanotouch.touch import session as session
+from nanotouch.touch import sessions as sessions
 from nanotouch.touch.faults import Faults as Faults
 from nanotouch.touch.operator import Input as Input
 from nanotouch.touch.record import Recording as Recording
 from nanotouch.touch.session import Session as Session
+from nanotouch.touch.sessions import Sessions as Sessions
 from nanotouch.touch.supervisor import Supervisor as Supervisor
 
 __version__: str
@@ -101,6 +103,7 @@ __all__ = [
     "Scanner",
     "Scene",
     "Session",
+    "Sessions",
     "Settings",
     "SlowFlow",
     "Steady",
@@ -146,6 +149,7 @@ __all__ = [
     "scanner",
     "scene",
     "session",
+    "sessions",
     "steady",
     "surface",
     "surface_file",

@@ -341,4 +341,5 @@ void bind_session(py::module_ &module)
     bind_requests(type);
     bind_facts(type);
     bind_session_run(module, type);
+    bind_sessions(module);
 }

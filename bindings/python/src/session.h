@@ -3,6 +3,7 @@
 #pragma once
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "control.h"
 #include "hal.h"
@@ -41,5 +42,12 @@ template <class Call> auto alone(Session &self, Call call)
     return call(self.handle);
 }
 
+using Records = std::vector<nt_record>;
+using Shape = std::vector<py::ssize_t>;
+
+// Records as arrays of a shape, by the names of the columns that a session of this kind has.
+py::dict columns_of(const Session &self, const Records &records, const Shape &shape);
+
 void bind_session_run(py::module_ &module, py::class_<Session> &type);
 void bind_session_left(py::class_<Session> &type);
+void bind_sessions(py::module_ &module);

@@ -56,24 +56,46 @@ static constexpr Column tapping[] = {
     SCALAR(lag),
 };
 
-using Records = std::vector<nt_record>;
-
-static py::array_t<double> column_of(const Records &records, long count, const Column &column)
+static py::array_t<double> column_of(const Records &records, const Shape &shape, const Column &column)
 {
-    py::array_t<double> values(count);
+    py::array_t<double> values(shape);
     double *out = values.mutable_data();
-    for (long i = 0; i < count; ++i)
+    for (py::ssize_t i = 0; i < values.size(); ++i)
         std::memcpy(&out[i], reinterpret_cast<const char *>(&records[static_cast<size_t>(i)]) + column.offset,
                     sizeof(double));
     return values;
 }
 
-template <class T> static py::array_t<T> bits_of(const Records &records, long count, uint32_t nt_record::*member)
+template <class T>
+static py::array_t<T> bits_of(const Records &records, const Shape &shape, uint32_t nt_record::*member)
 {
-    py::array_t<T> values(count);
-    for (long i = 0; i < count; ++i)
-        values.mutable_data()[i] = static_cast<T>(records[static_cast<size_t>(i)].*member);
+    py::array_t<T> values(shape);
+    T *out = values.mutable_data();
+    for (py::ssize_t i = 0; i < values.size(); ++i)
+        out[i] = static_cast<T>(records[static_cast<size_t>(i)].*member);
     return values;
+}
+
+py::dict columns_of(const Session &self, const Records &records, const Shape &shape)
+{
+    py::dict out;
+    const auto add = [&](const Column &column) { out[column.name] = column_of(records, shape, column); };
+    std::for_each(std::begin(columns), std::end(columns), add);
+    const nt_touch *touch = nt_session_touch(self.handle);
+    const bool gives_way = touch->rig.probe.lateral_stiffness > 0.0;
+    if (touch->leads_sideways)
+        std::for_each(std::begin(sideways), std::end(sideways), add);
+    if (touch->leads_sideways || gives_way)
+        std::for_each(std::begin(lateral), std::end(lateral), add);
+    if (gives_way)
+        std::for_each(std::begin(deflections), std::end(deflections), add);
+    if (touch->mode == NT_MODE_TAPPING)
+        std::for_each(std::begin(tapping), std::end(tapping), add);
+    out["state"] = bits_of<uint8_t>(records, shape, &nt_record::state);
+    out["reasons"] = bits_of<uint32_t>(records, shape, &nt_record::reasons);
+    out["flags"] = bits_of<uint32_t>(records, shape, &nt_record::flags);
+    out["phase"] = bits_of<uint8_t>(records, shape, &nt_record::phase);
+    return out;
 }
 
 static py::dict read_records(Session &self, long count)
@@ -83,25 +105,7 @@ static py::dict read_records(Session &self, long count)
     count = std::min(count, 2 * nt_session_setup_of(self.handle)->ring_capacity + 2); // more cannot wait
     Records records(static_cast<size_t>(count));
     const long got = alone(self, [&](nt_session *handle) { return nt_session_read(handle, records.data(), count); });
-    py::dict out;
-    for (const Column &column : columns)
-        out[column.name] = column_of(records, got, column);
-    const nt_touch *touch = nt_session_touch(self.handle);
-    const bool gives_way = touch->rig.probe.lateral_stiffness > 0.0;
-    const auto add = [&](const Column &column) { out[column.name] = column_of(records, got, column); };
-    if (touch->leads_sideways)
-        std::for_each(std::begin(sideways), std::end(sideways), add);
-    if (touch->leads_sideways || gives_way)
-        std::for_each(std::begin(lateral), std::end(lateral), add);
-    if (gives_way)
-        std::for_each(std::begin(deflections), std::end(deflections), add);
-    if (touch->mode == NT_MODE_TAPPING)
-        std::for_each(std::begin(tapping), std::end(tapping), add);
-    out["state"] = bits_of<uint8_t>(records, got, &nt_record::state);
-    out["reasons"] = bits_of<uint32_t>(records, got, &nt_record::reasons);
-    out["flags"] = bits_of<uint32_t>(records, got, &nt_record::flags);
-    out["phase"] = bits_of<uint8_t>(records, got, &nt_record::phase);
-    return out;
+    return columns_of(self, records, {got});
 }
 
 static std::string field_of(const nt_event &event)

@@ -36,9 +36,9 @@ class Played(Protocol):
     def read(self, rows: int) -> Columns: ...
 
 
-def joined(blocks: Sequence[Columns]) -> Columns:
-    """One block."""
-    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+def joined(blocks: Sequence[Columns], axis: int = 0) -> Columns:
+    """One block; ``axis`` is that of the rows."""
+    return {name: np.concatenate([block[name] for block in blocks], axis) for name in blocks[0]}
 
 
 def played(session: Played, script: Sequence[Input | Hold]) -> Generator[tuple[Columns, float]]:

@@ -72,6 +72,8 @@ class Session(Runs, Frozen):
     and records them.
     """
 
+    _ring_capacity = RING_CAPACITY  # rows
+
     def __init__(
         self,
         scene: Scene | None = None,
@@ -116,7 +118,7 @@ class Session(Runs, Frozen):
                     "preflight": options.get("preflight", True), "law": control if callable(control) else None,
                     "relative_accuracy": self.relative_accuracy, "bound": BOUNDS.index(self.bound),
                     "master": options.get("master"), "slave": options.get("slave"),
-                    "ring_capacity": RING_CAPACITY * options.get("recorded", True), "rod": rod and rod._core,
+                    "ring_capacity": self._ring_capacity * options.get("recorded", True), "rod": rod and rod._core,
                     **plant_options(options.get("probe_model", "auto"), options.get("substep"), faults),
                     "particles": None if particles is None else particles._core,
                 },
