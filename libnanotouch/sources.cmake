@@ -73,7 +73,9 @@ set(nanotouch_sources_manipulation
     manipulation/rod_step.c)
 set(nanotouch_sources_plasticity plasticity/dents.c plasticity/imprint.c plasticity/indentation.c plasticity/scratch.c)
 set(nanotouch_sources_rheology
+    rheology/adhesion.c
     rheology/arms.c
+    rheology/crack.c
     rheology/grow.c
     rheology/loop.c
     rheology/power_law.c

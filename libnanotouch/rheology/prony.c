@@ -94,29 +94,42 @@ static double multiplied(double q, const void *context)
     return sum;
 }
 
-double nt_prony_creep(const nt_rheology *rheology, int arms, double time)
+nt_status nt_prony_retard(const nt_rheology *rheology, int arms, nt_retardation *made)
 {
     const arms_by_rate of = by_rate(rheology, arms);
     const int fluid = of.equilibrium == 0.0;
-    double sum = fluid ? 0.0 : 1.0 / of.equilibrium;
-    if (fluid) {
-        double viscosity = 0.0, second = 0.0;
-        for (int k = 0; k < of.count; k++) {
-            viscosity += of.modulus[k] / of.rate[k];
-            second += of.modulus[k] / (of.rate[k] * of.rate[k]);
-        }
-        sum = time / viscosity + second / (viscosity * viscosity);
-    }
+    made->count = 0;
     for (int lower = fluid ? 0 : -1; lower + 1 < of.count; lower++) {
         const between gap = {&of, lower};
         const double bracket[2] = {lower < 0 ? 0.0 : of.rate[lower], of.rate[lower + 1]};
         double q, slope = 0.0;
         if (nt_root_find(multiplied, &gap, bracket, &q, NULL) != NT_OK)
-            return (double)NAN;
+            return NT_E_NO_CONVERGENCE;
         for (int k = 0; k < of.count; k++)
             slope += of.modulus[k] * of.rate[k] / ((of.rate[k] - q) * (of.rate[k] - q));
-        sum -= exp(-q * time) / (q * slope);
+        made->rates[made->count] = q;
+        made->compliances[made->count++] = 1.0 / (q * slope);
     }
+    return NT_OK;
+}
+
+double nt_prony_creep(const nt_rheology *rheology, int arms, double time)
+{
+    nt_retardation late;
+    double sum = 1.0 / rheology->equilibrium_modulus;
+    if (rheology->equilibrium_modulus == 0.0) {
+        double viscosity = 0.0, second = 0.0;
+        for (int k = 0; k < arms; k++) {
+            const double tau = rheology->relaxation_times[k];
+            viscosity += rheology->arm_moduli[k] * tau;
+            second += rheology->arm_moduli[k] * tau * tau;
+        }
+        sum = time / viscosity + second / (viscosity * viscosity);
+    }
+    if (nt_prony_retard(rheology, arms, &late) != NT_OK)
+        return (double)NAN;
+    for (int j = 0; j < late.count; j++)
+        sum -= late.compliances[j] * exp(-late.rates[j] * time);
     return sum;
 }
 

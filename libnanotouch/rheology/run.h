@@ -39,6 +39,9 @@ typedef struct nt_run {
     long edge, capacity;
 } nt_run;
 
+/* Times that increase, finite positions, the first out of contact; the range of times that the kernel must serve. */
+nt_status nt_viscoelastic_check_path(const nt_viscoelastic_path *path, nt_time_range *range, nt_problem *problem);
+
 /* A record of the first loading: time [s], depth D [m], the profile there, derivatives of the depth. */
 enum { NT_RUN_TIME, NT_RUN_DEPTH, NT_RUN_G, NT_RUN_SLOPE, NT_RUN_CURVATURE, NT_RUN_BY };
 static inline double *nt_run_record_at(const nt_run *run, long index)

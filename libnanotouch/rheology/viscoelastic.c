@@ -74,7 +74,7 @@ static nt_status wrong(nt_problem *problem, nt_status status, nt_problem found)
     return status;
 }
 
-static nt_status check_path(const nt_viscoelastic_path *path, nt_time_range *range, nt_problem *problem)
+nt_status nt_viscoelastic_check_path(const nt_viscoelastic_path *path, nt_time_range *range, nt_problem *problem)
 {
     const double *t = path->times, *z = path->positions, inf = (double)INFINITY;
     if (path->count < 2)
@@ -227,7 +227,7 @@ nt_status nt_viscoelastic_run(const nt_viscoelastic *contact, const nt_viscoelas
     nt_run run;
     nt_status status = nt_viscoelastic_check(contact, problem);
     if (status == NT_OK)
-        status = check_path(path, &range, problem);
+        status = nt_viscoelastic_check_path(path, &range, problem);
     if (status != NT_OK)
         return status;
     (void)nt_rheology_discretize(&contact->rheology, &range, KERNEL_ERROR, &spectrum); /* its error is reported */

@@ -28,3 +28,6 @@ class Viscoelastic:
     def run(
         self, times: _Floats, positions: _Floats, contact: float, derivatives: bool, /
     ) -> tuple[_Floats, _Floats, _Floats | None, int, float, bool]: ...
+    def run_adhesive(
+        self, times: _Floats, positions: _Floats, contact: float, work_of_adhesion: float, crack_length: float, /
+    ) -> tuple[_Floats, _Floats, int, float, float]: ...

@@ -60,7 +60,7 @@ class Force(NamedTuple):
     """What a history gives; one of each per point."""
 
     force: Floats
-    """F, never below 0 [N]"""
+    """F, without adhesion never below 0 [N]"""
     indentation: Floats
     """delta; below 0: above the sample [m]"""
     derivatives: Floats | None
@@ -71,6 +71,10 @@ class Force(NamedTuple):
     """max relative error of that sum; the force errs by some tenth of it"""
     by_springs: bool
     """a contact that had shrunk grew again, and 128 springs followed it: 3e-4 of the max force"""
+    bulk_error: float = 0.0
+    """with adhesion: what the bulk still relaxes, estimated, over the max absolute force"""
+    dissipated: float = 0.0
+    """with adhesion: at the edge of the contact [J]"""
 
 
 @dataclass(frozen=True)
@@ -233,8 +237,15 @@ class Rheology:
         thickness: float = 0.0,
         spring_constant: float = 0.0,
         derivatives: bool = False,
+        work_of_adhesion: float = 0.0,
+        crack_length: float = 0.0,
     ) -> Force:
-        """The force of a rigid tip without adhesion along a history of the probe's base (Lee and Radok; Ting).
+        """The force of a rigid tip along a history of the probe's base (Lee and Radok; Ting).
+
+        With a work of adhesion it is JKR's contact with the equilibrium modulus, whose edge is a crack: opening takes
+        w_eff(v) from w at rest to w E_0/E_inf at high speed (Persson and Brener 2005), closing returns w^2/w_eff.
+        Then a paraboloid on a half-space, a kernel with finite E_0/E_inf, and a base so slow that the bulk relaxes
+        (``bulk_error`` at most 5 %) are needed; anything else is an InvalidValue.
 
         Parameters
         ----------
@@ -254,7 +265,12 @@ class Rheology:
         spring_constant : float
             Of the lever [N/m], whose bending is solved for; 0: rigid.
         derivatives : bool
-            Also those of the force, by ``contact`` and by :attr:`parameters`.
+            Also those of the force, by ``contact`` and by :attr:`parameters`; not with adhesion.
+        work_of_adhesion : float
+            w of a contact at rest [J/m^2]; 0: none.
+        crack_length : float
+            a_0, length of the process zone at the edge of a contact at rest [m], about E* w/(2 pi sigma^2) for a
+            cohesive stress sigma; at most a tenth of the contact radius without load.
         """
         times, positions = as_floats(time, "time"), as_floats(position, "position")
         if times.ndim != 1 or times.shape != positions.shape:
@@ -263,7 +279,24 @@ class Rheology:
             )
         tip = _core.Shape(KINDS.index(shape.kind), shape.sides, shape.radius, shape.half_angle, shape.transition)
         law = _core.Viscoelastic(tip, self._core, float(poisson_ratio), float(thickness), float(spring_constant))
-        return Force(*law.run(times, positions, float(contact), bool(derivatives)))
+        if work_of_adhesion == 0.0 and crack_length == 0.0:
+            return Force(*law.run(times, positions, float(contact), bool(derivatives)))
+        self._check_adhesion(shape, derivatives)
+        edge = float(work_of_adhesion), float(crack_length)
+        forces, depths, arms, bulk_error, dissipated = law.run_adhesive(times, positions, float(contact), *edge)
+        return Force(forces, depths, None, arms, 0.0, False, bulk_error, dissipated)
+
+    def _check_adhesion(self, shape: Shape, derivatives: bool) -> None:
+        """InvalidValue for what the law with adhesion does not know, in words."""
+        if shape.kind != "paraboloid":
+            raise InvalidValue(f"a {shape.kind} with adhesion: only a paraboloid has this law (JKR)")
+        if self.kind == "power_law" or self.equilibrium_modulus == 0.0:
+            raise InvalidValue(
+                f"a {self.kind} with adhesion: E_0/E_inf must be finite; take a standard_linear_solid or a prony "
+                "series with an equilibrium_modulus above 0 Pa"
+            )
+        if derivatives:
+            raise InvalidValue("derivatives with adhesion: there are none")
 
 
 def _example(name: str) -> str:

@@ -92,6 +92,29 @@ static py::tuple run(const nt_viscoelastic &contact, const Array &times, const A
     return py::make_tuple(forces, indentations, by, result.arms, result.kernel_error, result.by_springs != 0);
 }
 
+// The same with adhesion: forces, indentations, arms, what the bulk still relaxes, what is lost at the edge.
+static py::tuple run_adhesive(const nt_viscoelastic &contact, const Array &times, const Array &positions,
+                              double first_touch, double work_of_adhesion, double crack_length)
+{
+    const py::ssize_t count = times.size();
+    if (positions.size() != count)
+        throw std::invalid_argument("viscoelastic contact: as many positions as times");
+    py::array_t<double> forces(count), indentations(count);
+    nt_viscoelastic_result result{};
+    result.forces = forces.mutable_data();
+    result.indentations = indentations.mutable_data();
+    const nt_viscoelastic_path path = {times.data(), positions.data(), first_touch, static_cast<long>(count), nullptr};
+    const nt_viscoelastic_adhesion adhesion = {work_of_adhesion, crack_length};
+    nt_problem problem{};
+    nt_status status;
+    {
+        py::gil_scoped_release release;
+        status = nt_viscoelastic_run_adhesive(&contact, &adhesion, &path, &result, &problem);
+    }
+    raise_on(status, problem, "viscoelastic contact with adhesion");
+    return py::make_tuple(forces, indentations, result.arms, result.bulk_error, result.dissipated);
+}
+
 static py::list fields()
 {
     int count = 0;
@@ -113,5 +136,8 @@ void bind_rheology(py::module_ &module)
         .def("creep", [](const nt_rheology &self, const Array &t) { return map_times(self, t, nt_rheology_creep); })
         .def("discretize", &discretize)
         .def_property_readonly_static("fields", [](const py::object &) { return fields(); });
-    py::class_<nt_viscoelastic>(module, "Viscoelastic").def(py::init(&contact_of)).def("run", &run);
+    py::class_<nt_viscoelastic>(module, "Viscoelastic")
+        .def(py::init(&contact_of))
+        .def("run", &run)
+        .def("run_adhesive", &run_adhesive);
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A rigid tip on a linear viscoelastic sample, without adhesion: the force along any history of the probe's base.
+ * A rigid tip on a linear viscoelastic sample: the force along any history of the probe's base.
  *
- * While the contact grows F = 1/(1 - nu^2) Int E(t - s) dg(delta(s)) (Lee and Radok 1960), g(delta) the elastic law
- * over E*; while it shrinks the integral ends at the time t_1 when the contact was last as large (Ting 1966). The base
- * moves in straight lines between the points given; a lever bends in between: delta = position - contact - F/k_c. */
+ * Without adhesion: while the contact grows F = 1/(1 - nu^2) Int E(t - s) dg(delta(s)) (Lee and Radok 1960), g(delta)
+ * the elastic law over E*; while it shrinks the integral ends at the time t_1 when the contact was last as large (Ting
+ * 1966). The base moves in straight lines between the points given; a lever bends in between: delta = position -
+ * contact - F/k_c. */
 #ifndef NANOTOUCH_VISCOELASTIC_H
 #define NANOTOUCH_VISCOELASTIC_H
 
@@ -47,6 +48,8 @@ typedef struct nt_viscoelastic_result {
     int arms;            /* of the sum of exponentials */
     double kernel_error; /* of it [1], as nt_spectrum.error; the force errs by some tenth of that */
     int by_springs;      /* 1: a contact that had shrunk grew again, and 128 springs followed it; 3e-4 of F_max */
+    double bulk_error;   /* with adhesion: what the bulk still relaxes, estimated, over the max |F| [-] */
+    double dissipated;   /* with adhesion: at the contact's edge [J] */
 } nt_viscoelastic_result;
 
 /* Doubles that a history of so many points needs, with derivatives or without. */
@@ -56,6 +59,24 @@ NT_API long nt_viscoelastic_workspace(const nt_viscoelastic *contact, long count
  * first point in contact, a layer or a sphere pressed beyond its law). */
 NT_API nt_status nt_viscoelastic_run(const nt_viscoelastic *contact, const nt_viscoelastic_path *path,
                                      nt_viscoelastic_result *result, nt_problem *problem);
+
+/* --- With adhesion: the loss at the edge of the contact --- */
+
+/* JKR's contact with E_inf, whose edge is a crack with w_eff(v): w times Persson and Brener's ratio (Phys. Rev. E 71
+ * (2005) 036123) while it opens, w over that ratio while it closes (Greenwood, J. Phys. D 37 (2004) 2557: the product
+ * is about w^2). The ratio is 1 at rest and E_0/E_inf at high speed. */
+typedef struct nt_viscoelastic_adhesion {
+    double work_of_adhesion; /* w, of an edge at rest [J/m^2] */
+    double crack_length;     /* a_0, of the process zone at that edge: about E* w/(2 pi sigma^2) for a cohesive stress
+                              * sigma; at most a tenth of JKR's contact radius without load [m] */
+} nt_viscoelastic_adhesion;
+/* Along a history. Forces go below 0. Paraboloid on a half-space; standard linear solid or Prony series with E_inf > 0.
+ * It holds while the bulk has relaxed: the base may move no faster than makes bulk_error 5 %. No derivatives; the
+ * workspace is not used. NT_OK, or as nt_viscoelastic_run; NT_E_RANGE with the field that lies outside
+ * ("rheology.kind", "shape.kind", "thickness", "crack_length", "speed"). */
+NT_API nt_status nt_viscoelastic_run_adhesive(const nt_viscoelastic *contact, const nt_viscoelastic_adhesion *adhesion,
+                                              const nt_viscoelastic_path *path, nt_viscoelastic_result *result,
+                                              nt_problem *problem);
 
 #ifdef __cplusplus
 }
