@@ -3,12 +3,14 @@
 // points do not determine can go before the fit gets worse.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <new>
 #include <vector>
 
 #include "model.hpp"
+#include "solving.hpp"
 
 namespace nanotouch
 {
@@ -142,6 +144,25 @@ nt_status shift(const nt_fit_solution &solution, const nt_fit_data &data, nt_fit
 }
 
 } // namespace
+
+bool asks(const nt_fit_options &options, nt_fit_parameter place, const char *name)
+{
+    const nt_fit_quantity quantity = nt_fit_quantity_of(&options, place);
+    return quantity.name && !std::strcmp(quantity.name, name) && !options.parameter[place].fixed;
+}
+
+void Solving::doubt_adhesion()
+{
+    const nt_fit_options &options = solution_.options;
+    nt_fit_result &fit = solution_.fit;
+    if (!asks(options, NT_FIT_WORK_OF_ADHESION, "work_of_adhesion") || !fit.identifiable[NT_FIT_WORK_OF_ADHESION] ||
+        options.tear_sigma > 0.0 || is_exact())
+        return;
+    Profile profile(solution_, data_, NT_FIT_WORK_OF_ADHESION);
+    const double fitted = profile.clip(fit.value[NT_FIT_WORK_OF_ADHESION]);
+    fit.identifiable[NT_FIT_WORK_OF_ADHESION] =
+        profile.at(profile.clip(0.1 * fitted)) > profile.at(fitted) + 2.0 * excess;
+}
 
 } // namespace nanotouch
 

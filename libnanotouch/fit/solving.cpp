@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <new>
 
@@ -38,12 +37,6 @@ constexpr double precise = 0.1823;     // ln 1.2: what 95 % of E* may be off by 
 constexpr double bent = 0.1;           // of the load
 constexpr double computed = 1e-9;      // noise over force of points in which nothing is to be weighed
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-bool asks(const nt_fit_options &options, nt_fit_parameter place, const char *name)
-{
-    const nt_fit_quantity quantity = nt_fit_quantity_of(&options, place);
-    return quantity.name && !std::strcmp(quantity.name, name) && !options.parameter[place].fixed;
-}
 
 bool is_near(double scatter, double noise)
 {
@@ -321,6 +314,7 @@ void Solving::judge()
     solution_.half_modulus[0] = solution_.half_modulus[1] = solution_.power[0] = solution_.power[1] = not_a_number;
     if (asks(options, NT_FIT_EFFECTIVE_MODULUS, "effective_modulus") && !is_exact())
         doubt_modulus();
+    doubt_adhesion();
 }
 
 // Of the law's shape, and of what noise leaves: each puts E* in doubt.
@@ -371,9 +365,9 @@ nt_status Solving::run()
         status = doubt_calibration();
     if (status != NT_OK)
         return status;
-    judge();
     solution_.count = data_.count;
     solution_.exact = is_exact();
+    judge();
     return NT_OK;
 }
 

@@ -42,6 +42,9 @@ class Solving
     double rating() const;
     void judge();
     void doubt_modulus();
+    // w that no tear tells is not known where a tenth of it describes the points nearly as well: near w = 0 the force
+    // goes as its root, and the standard uncertainty is too small (profile.cpp).
+    void doubt_adhesion();
     double noise_of_modulus() const;
     bool is_bent() const;
 
@@ -54,5 +57,8 @@ class Solving
     std::vector<nt_fit_point> points_;
     nt_fit_solution solution_{};
 };
+
+// Whether a law asks for a quantity of this name at this place.
+bool asks(const nt_fit_options &options, nt_fit_parameter place, const char *name);
 
 } // namespace nanotouch

@@ -138,3 +138,40 @@ def test_a_thinned_track_asks_for_the_same_sample() -> None:
     assert some.values["exponent"] == pytest.approx(whole.values["exponent"], abs=5e-4)
     assert some.values["effective_modulus"] == pytest.approx(whole.values["effective_modulus"], rel=1e-3)
     assert track.thinned(10_000)[0] is track
+
+
+def test_a_power_of_no_tip_is_a_doubt() -> None:
+    """As of a layer or a bent baseline, under noise that hides which tip's law is nearer: it was `ok`."""
+    scale = 4 / 3 * RADIUS**0.5 * 1e-6**-0.25
+    steep = curve_of(Sample(2e3, 0.0, power=1.75, scale=scale), 600, noise=100e-12)
+    found = fit.fit_curve(steep, "ting_power", branch="approach", **HERE)
+    assert found.status == "misfit"
+    assert "with which the force rises is not 1.5" in found.doubt
+    round_tip = curve_of(Sample(2e3, 0.0), 600, noise=100e-12)
+    assert fit.fit_curve(round_tip, "ting_power", branch="approach", **HERE).status == "ok"
+
+
+def test_a_drift_is_no_adhesion() -> None:
+    """A force that sinks by 7 % of the load during the curve left the retraction out, and gave an elastic sample a beta
+    of 0.05."""
+    approach, retract = curve_of(Sample(2e3, 0.0), 600, noise=10e-12).segments
+    rest = np.arange(1, 301) * (approach.time[1] - approach.time[0])
+    pause = replace(
+        approach, role="pause", time=approach.time[-1] + rest, z=np.full(300, approach.z[-1]),
+        force=approach.force[-1] + 10e-12 * np.random.default_rng(1).normal(size=300), deflection=None,
+    )  # fmt: skip
+    held = ForceCurve((approach, pause, replace(retract, time=retract.time + rest[-1])), {"spring constant": 0.06})
+    rate = -0.07 * approach.force.max() / np.ptp(np.concatenate([p.time for p in held.segments]))
+    found = fit.fit_curve(changed(held, lambda p: p.force + rate * p.time), "ting_power", **HERE)
+    assert found.status == "ok"
+    assert found.interval["exponent"][0] <= 1e-4
+    assert found.interval["exponent"][1] < 0.01
+    assert not any("left out" in note for note in found.notes)
+
+
+def test_ends_of_thinned_segments_that_meet_are_one() -> None:
+    """The end of one and the start of the next came 2e-16 s apart, the law refused that, and no other was compared."""
+    curve = curve_of(GEL, 4000, noise=10e-12)
+    shifted = replace(curve, segments=tuple(replace(p, time=p.time + 0.1) for p in curve.segments))
+    thin, _ = ting.track_of(shifted, analyse(shifted), approach_only=False, window=None).thinned()
+    assert np.diff(thin.time).min() > 1e-3 * np.median(np.diff(thin.time))

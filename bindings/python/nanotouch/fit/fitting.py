@@ -22,7 +22,7 @@ from .reporting import Sample, Tip, make_result
 from .result import FitResult
 from .show import with_sigma
 from .solving import Setup, solve
-from .ting import DRAG_HEIGHT, Law, noise_of, report_of, track_of
+from .ting import DRAG_HEIGHT, Law, adheres, noise_of, report_of, track_of
 from .uncertainties import Uncertainties
 from .whole import Whole, fit_whole
 
@@ -223,11 +223,15 @@ def _over_time(curve: ForceCurve, model: Model, size: TipSize, given: Given, ass
         held=held,
     )
     law.check_names(extension())
-    track = track_of(curve, report, approach_only=given.branch == "approach", window=given.window)
+    approach_only = given.branch == "approach"
+    track = track_of(curve, report, approach_only=approach_only, window=given.window)
+    dipping = None
+    if adheres(report) and not approach_only:
+        dipping = track_of(curve, report, approach_only=False, window=given.window, dips=True)
     known, sharp = size.tip is not None or size.radius is not None, model.sides is not None
     assumptions += given.uncertainties.assumptions(sharp=sharp, layer=law.thickness > 0.0)
     told = Tip("", known, size.half_angle is None if sharp else not known)
-    return fit_whole(Whole(curve, report, law, track), given.uncertainties,
+    return fit_whole(Whole(curve, report, law, track, dipping), given.uncertainties,
                      Sample(given.poisson_ratio, size.tip), assumptions, told)  # fmt: skip
 
 

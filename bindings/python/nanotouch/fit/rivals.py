@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a curve says against the model over time that was fitted to it: another kernel or tip describes it better, or
-the approach alone asks for other values (adhesion, a pause that was not recorded, drift)."""
+"""What a curve says against the model over time that was fitted to it: another kernel or tip describes it better, the
+force rises with another power of the indentation, or the approach alone asks for other values (adhesion, a pause that
+was not recorded, drift)."""
 
 from __future__ import annotations
 
@@ -15,6 +16,8 @@ from .over_time import OVER_TIME
 from .ting import Found, Law, Track, solve
 
 _WIDENED = 2.0  # sigma over that of white noise, from where others are tried
+_STRUCTURED = 1.5  # the same, from where the power is looked at
+_POWER, _POWER_SIGMAS = 0.15, 3.0  # least difference from the law's power that counts, and in standard uncertainties
 _SMALL = 5e-4  # of the load: residuals that change nothing
 _BETTER = 0.25  # of the squared residual beyond the noise
 _SIGMAS = 2.5
@@ -28,15 +31,15 @@ def doubt_of(law: Law, track: Track, found: Found) -> str:
     """In words; empty where the residuals are noise, or where nothing else describes the curve better."""
     beyond = _beyond(law, track, found)
     least = max(_margin(law, track), (_SMALL * float(found.raw["peak"])) ** 2)
-    if widened(found) < _WIDENED or not beyond > least:
-        return ""
     track, each = track.thinned()
     law = replace(law, noise=law.noise / each**0.5)
+    if widened(found) < _WIDENED or not beyond > least:
+        return _doubt_of_power(law, track) if widened(found) > _STRUCTURED else ""
     for name in _rivals(law):
         other = _fitted(replace(law, model=OVER_TIME[name]), track)
         if other is not None and _beyond(law, track, other) < _BETTER * beyond + _margin(law, track):
             return f"{name} describes the curve better"
-    return _doubt_of_approach(law, track, found, beyond)
+    return _doubt_of_approach(law, track, found, beyond) or _doubt_of_power(law, track)
 
 
 def widened(found: Found) -> float:
@@ -69,6 +72,30 @@ def _beyond(law: Law, track: Track, found: Found) -> float:
 def _margin(law: Law, track: Track) -> float:
     """Of the same, what chance makes [N^2]."""
     return float(3.0 * np.sqrt(2.0 / np.count_nonzero(track.fitted)) * law.noise**2)
+
+
+def _doubt_of_power(law: Law, track: Track) -> str:
+    """A mixture of this tip's curve and that of another power, each fitted: its share tells the power. Of a layer,
+    whose force has none, nothing is said."""
+    if law.thickness > 0.0:
+        return ""
+    rival = OVER_TIME[law.model.kernel + _TIPS[law.model.tip]]
+    try:  # at an end of the exponent's range a fit may stop early
+        own, other = (solve(extension(), replace(law, model=model), track) for model in (law.model, rival))
+    except Error:
+        return ""
+    towards = (other.fitted - own.fitted)[track.fitted]
+    square, difference = float(towards @ towards), rival.exponent - law.model.exponent
+    if not square > 0.0:
+        return ""
+    apart = difference * float((track.force - own.fitted)[track.fitted] @ towards) / square
+    sigma = abs(difference) * law.noise / square**0.5
+    if not abs(apart) > max(_POWER, _POWER_SIGMAS * sigma):
+        return ""
+    power, cause = law.model.exponent + apart, "another tip, a layer on stiff ground, a soft film, or a bent baseline"
+    if 0.5 < power < 3.0:
+        cause = f"but {power:.2g}: {cause}"
+    return f"the power of the indentation with which the force rises is not {law.model.exponent:g} ({cause})"
 
 
 def _doubt_of_approach(law: Law, track: Track, found: Found, beyond: float) -> str:

@@ -33,6 +33,7 @@ BACKGROUND = ("contact_point", "force_offset", "force_tilt", "drag")
 UNITS = {"contact_point": "m", "force_offset": "N", "force_tilt": "N/m", "drag": "N s/m"}
 DRAG_HEIGHT = "drag_height"
 SMALLEST_NOISE = 1e-15  # N
+_ROUNDED = 1e-6  # of a step of time: none
 _GAP, _STEPS = 0.05, 10.0  # of the time that is recorded, and of its steps
 
 
@@ -85,7 +86,8 @@ class Track:
             starts.append(count)
             count += columns[0][-1].size
         time, position, force, fitted = (np.concatenate(column) for column in columns)
-        kept = np.diff(time, prepend=-np.inf) > 0.0  # a segment of one point has but one end
+        step = np.diff(time, prepend=-np.inf)
+        kept = step > _ROUNDED * float(np.median(step))  # ends of two segments meet, and one point has but one end
         starts = [int(np.count_nonzero(kept[:start])) for start in starts]
         return replace(self, time=time[kept], position=position[kept], force=force[kept], fitted=fitted[kept] > 0.999,
                        starts=starts), each  # fmt: skip
@@ -183,8 +185,11 @@ def report_of(curve: ForceCurve, report: CurveReport) -> CurveReport:
     return analyse(ForceCurve(tuple(ends), curve.meta, curve.name))
 
 
-def track_of(curve: ForceCurve, report: CurveReport, *, approach_only: bool, window: Window | None) -> Track:
-    """All segments of a curve; InvalidValue where it has no times."""
+def track_of(
+    curve: ForceCurve, report: CurveReport, *, approach_only: bool, window: Window | None, dips: bool = False
+) -> Track:
+    """All segments of a curve; InvalidValue where it has no times. A retraction that adheres is on the path alone, or
+    with `dips` fitted, too."""
     if "approach" not in report.baselines:
         raise InvalidValue(f"{curve.name}: no approach; a fit over time begins where the sample was untouched")
     baseline = report.baselines["approach"]
@@ -201,7 +206,7 @@ def track_of(curve: ForceCurve, report: CurveReport, *, approach_only: bool, win
     fitted = np.ones(time.size, dtype=bool)
     roles = np.array([part.role for part in parts])[number]
     gap = _gap(time, roles)
-    if adheres(report) or gap > 0.0:
+    if (adheres(report) and not dips) or gap > 0.0:
         fitted &= roles != "retract"
     if window is not None:
         fitted &= (force >= window[0]) & (force <= window[1])

@@ -40,6 +40,7 @@ _FREE = (
     0.1  # of the approach: with less out of contact its level and tilt take the place of a contact that began before
 )
 _TOUCHED = 10.0  # of the noise
+_CLEAN = 1.3  # sigma over that of white noise, of a law that describes all of a curve
 _WEAK = 0.02  # arm over E* at rest, below which a curve hardly shows it
 _STEEPEST = 0.99
 _SLOW = 3.0  # a relaxation time beyond the record's length times this is none that it shows
@@ -52,6 +53,8 @@ class Whole(NamedTuple):
     report: CurveReport
     law: Law
     track: Track
+    dipping: Track | None = None
+    """the same with a retraction that seems to adhere: a drift of the force may be all of it"""
 
 
 class Spread(NamedTuple):
@@ -67,13 +70,29 @@ class Spread(NamedTuple):
 
 def _solved(whole: Whole) -> tuple[Whole, Found]:
     """The fit with any drift of the force taken off, and the curve without it."""
-    _, _, law, track = whole
+    law, track = whole.law, whole.track
+    if (drifting := _drifting(whole)) is not None:
+        return drifting
     try:
         found = solve(extension(), law, track)
     except SolverError as error:
         raise SolverError(f"{whole.curve.name}: {error}; {_cause(law, track)}") from error
     track, found = without_drift(law, track, found)
     return whole._replace(track=track), found
+
+
+def _drifting(whole: Whole) -> tuple[Whole, Found] | None:
+    """Where a drift is all that takes the retraction below the free level: the whole curve is then this law's."""
+    if whole.dipping is None:
+        return None
+    law = whole.law
+    try:
+        track, found = without_drift(law, whole.dipping, solve(extension(), law, whole.dipping))
+    except SolverError:
+        return None
+    if track.drift == 0.0 or not found.raw["converged"] or widened(found) > _CLEAN:
+        return None
+    return whole._replace(track=track, dipping=None), found
 
 
 def _verdict(law: Law, track: Track, found: Found, notes: list[str]) -> tuple[str, str]:
@@ -89,7 +108,7 @@ def fit_whole(
 ) -> FitResult:
     """Fit, and all that is known about it."""
     whole, found = _solved(whole)
-    _, report, law, track = whole
+    report, law, track = whole.report, whole.law, whole.track
     spread = _spread(whole, found, uncertainties)
     identifiable = _identifiable(law, found, track, spread)
     notes = list(report.notes) + _notes(whole, found)
@@ -259,7 +278,7 @@ def _contact_radius(law: Law, found: Found) -> float:
 
 
 def _notes(whole: Whole, found: Found) -> list[str]:
-    _, report, law, track = whole
+    report, law, track = whole.report, whole.law, whole.track
     notes, raw = [], found.raw
     rms = found.rms(track)
     if law.noise > 0.0 and rms > MISFIT * law.noise:
