@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page on backends says what is so: its code is that of the examples, its tables are those of the headers."""
+"""The pages on backends say what is so: the code is that of the examples, the tables are those of the headers."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs/hal.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs/howto/backend.md").read_text(encoding="utf-8")
 EXAMPLES = ROOT / "docs/examples/hal"
 HEADER = (ROOT / "libnanotouch/include/nanotouch/hal_backend.h").read_text(encoding="utf-8")
 
 
 def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
+    return re.findall(rf"^```{language}\n(.*?)^```", GUIDE, re.DOTALL | re.MULTILINE)
 
 
 def test_code_is_that_of_the_examples() -> None:

@@ -20,7 +20,7 @@ PAGES = [
 ]
 PROGRAMS = [*(ROOT / "docs/examples").glob("*/*.py"), *(ROOT / "apps/python").glob("*.py")]
 BLOCK = re.compile(r"^ *```(?:python|\{testsetup\}|\{testcode\})\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
-IN_PARTS = "hal.md"
+IN_PARTS = "backend.md"
 """shows parts of docs/examples/hal, which is checked as a whole"""
 
 SETTINGS = """[mypy]
