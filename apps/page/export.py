@@ -74,7 +74,7 @@ def constants() -> dict[str, Any]:
     taken = {host: "SPEEDS REWIND STEP_TICKS VALUES",
              seen: "HISTORY SLICES TAIL TRACE TRACE_STEP STALE READINGS LAXER ANSWERS",
              relief: "RELIEF SLENDER LADDER HIGHEST",
-             stage: "FLOOR LIGHTS FAR LIFTED VIEWS",
+             stage: "FLOOR LIGHTS FAR LIFTED RAISED VIEWS ZOOM CLOSEST",
              instrument: "TIP_HEIGHT LEVER LEVER_POINTS NOSE TILT CHIP CAST BALL BEND SHADOW SHADES BEAM_SHADES",
              balls: "PARTICLE RING THICK",
              readings: "TIP_STEP HAND_STEPS NOTED", look: "PROPERTY_COLOURS PROPERTY_NAMES"}  # fmt: skip

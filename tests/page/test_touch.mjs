@@ -2,7 +2,7 @@
 // The page in Chromium, opened from a file with the network off. Counters, ages and forces decide, never frame rates.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { all, FILE, open, touched, until, value, visit } from "./browser.mjs";
+import { all, FILE, later, open, touched, until, value, visit } from "./browser.mjs";
 
 let chromium;
 before(async () => { chromium = await open({ offline: true }); });
@@ -45,6 +45,32 @@ test("scroll down: the force rises and the picture changes; drag: the tip goes t
   await until(page, (old) => window.nanotouch.seen.now.tip[0] > old + 5e-9, x);
   assert.deepEqual(requests.filter((url) => !/^(file|blob|data):/.test(url)), []);
   assert.deepEqual(said.filter((words) => !/GL Driver|WebGL/.test(words)), []);
+  await page.close();
+});
+
+test("a wheel with control, and V, magnify about the tip: drags get finer, the scale bar follows", async () => {
+  const { page } = await visit(chromium.context, FILE);
+  await touched(page);
+  const seenAt = () => window.nanotouch.stage.pixel(window.nanotouch.stage.apex(window.nanotouch.seen.now));
+  const way = () => Math.hypot(...window.nanotouch.stage.dragged(window.nanotouch.stage.apex(window.nanotouch.seen.now), [30, 10]));
+  const [before, far, bar] = [await value(page, seenAt), await value(page, way), await value(page, () => window.nanotouch.stage.perMetre)];
+  await page.locator("#view").focus();
+  await page.keyboard.press("v");
+  const { x, y } = await page.locator("#view").boundingBox();
+  await page.mouse.move(x + 300, y + 300);
+  await page.keyboard.down("Control");
+  await page.mouse.wheel(0, -200);
+  await page.keyboard.up("Control");
+  await until(page, () => window.nanotouch.stage.magnification > 3);
+  await later(page, 2);
+  const factor = await value(page, () => window.nanotouch.stage.magnification), after = await value(page, seenAt);
+  assert.ok(Math.abs(factor - 1.25 ** 5) < 1e-9);
+  assert.ok(Math.hypot(after[0] - before[0], after[1] - before[1]) < 4, `${before} ${after}`);
+  assert.ok(Math.abs((await value(page, way)) * factor / far - 1) < 0.02);
+  const ratio = (await value(page, () => window.nanotouch.stage.perMetre)) / bar / factor;
+  assert.ok(Math.abs(ratio - 1) < 0.05, `${ratio}`); // the view is a little lower where a note stands below
+  await page.keyboard.press("0");
+  assert.equal(await value(page, () => window.nanotouch.stage.magnification), 1);
   await page.close();
 });
 

@@ -66,7 +66,7 @@ def test_a_page_is_told_what_it_draws_and_changes_what_has_a_slider(watched: Cal
     kinds = [message["tell"] for message in one.told]
     assert kinds[:3] == ["sliders", "world", "guide"]
     world, (sliders,) = one.of("world"), [message["sliders"] for message in one.told if message["tell"] == "sliders"]
-    assert world["watched"]
+    assert world["leads"] == ""
     assert world["name"] == one.name
     for row in sliders:
         assert len(row["stops"]) == 201

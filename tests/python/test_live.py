@@ -304,6 +304,26 @@ def test_the_shadow_lies_on_the_surface() -> None:
             assert z == pytest.approx(drawn + stage.LIFTED, abs=1e-6)
 
 
+@pytest.mark.parametrize("view", ["0", "2", "3"])
+def test_a_drag_is_as_much_finer_as_the_picture_is_larger(view: str) -> None:
+    """It grows about the tip, which is seen where it was, wherever that is."""
+    vtk = pytest.importorskip("vtkmodules.all")
+    window, renderer = vtk.vtkRenderWindow(), vtk.vtkRenderer()
+    window.SetSize(800, 600)
+    window.AddRenderer(renderer)
+    made = stage.Stage(vtk, renderer, np.zeros((64, 64)), np.array([1e-8, 1e-8]))
+    tip, pixels = np.array([0.8, 0.3, 0.05]), np.array([30.0, 10.0])
+    made.camera(view)
+    made.turn(20.0, -5.0)
+    place, way = made.pixel(tip), np.array(made.dragged(tip, pixels))
+    for steps in (4.0, 100.0, -100.0):
+        factor = made.magnify(steps)
+        made._look_at(tip)
+        assert made.pixel(tip) == pytest.approx(place, abs=1e-6)
+        assert factor * np.array(made.dragged(tip, pixels)) == pytest.approx(way, rel=0.02)  # by a difference
+    assert factor == 1.0
+
+
 def test_what_is_no_display_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """Somebody answers on the port of a display, and is none."""
     server = socket.socket()

@@ -13,7 +13,7 @@ import nanotouch as nt
 import pytest
 from nanotouch.errors import Error
 from nanotouch_app.live.host import Host
-from nanotouch_app.live.remote import Lease, Remote
+from nanotouch_app.live.remote import TAKEN, Lease, Remote
 from nanotouch_app.live.subject import of_preset
 
 
@@ -90,6 +90,32 @@ def test_a_window_that_watches_changes_the_world_through_the_queue() -> None:
     assert session.state == "LATCHED"
     remote.ask({"do": "arm"})
     answered(session, remote)
+    remote.close()
+
+
+def test_a_view_outlives_a_session_that_stands_still_and_a_lease_that_is_lost() -> None:
+    """It died of the first after a second of silence: "a device is missing or failed"."""
+    name = f"still-{os.getpid()}"
+    session = nt.Session(seed=1)
+    session.publish(name)
+    session.advance(0.01)
+    remote = Remote(name, nt.frames.attach(name))
+    change = {"do": "change", "what": "scene", "field": "medium.relative_humidity", "value": 0.3}
+    remote.turn(None)
+    remote.ask(change)
+    time.sleep(1.05)  # NT_FRAMES_SILENCE
+    assert remote.turn(None) == []
+    [(message, answer)] = answered(session, remote)
+    assert (message, answer.status) == (change, 0)
+    remote.turn(None)
+    remote.ask(change)
+    remote.lease.client.release()
+    other = Lease(name)
+    other.take()
+    session.advance(0.01)
+    (told,) = remote.turn(None)
+    assert told == {"tell": "refused", "why": f"refused: {TAKEN}", "field": change["field"]}
+    other.close()
     remote.close()
 
 

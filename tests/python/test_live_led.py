@@ -98,6 +98,7 @@ def test_beside_a_device_that_leads_z_the_mouse_leads_x_and_y() -> None:
     session = nt.Session(rig=nt.Rig(), surface=surface, path=[(2e-6, 2e-6)], seed=1, recorded=False)
     led = Led(session, f"sideways-{os.getpid()}", sideways=True)
     assert "its device leads z" in led.remote.world["source"]
+    assert led.remote.world["leads"] == "xy"  # so that a wheel magnifies
     session.advance(0.2, nt.operator.Hold(session.core.master_start + 2e-3, 2e-6, 2e-6, 0.1))
     before = led.frame.copy()
     for _ in range(3):

@@ -67,7 +67,7 @@ class Watcher:
         described = nt.Scene(**message["scene"]), nt.Rig(**message["rig"]), nt.Settings(**message["settings"])
         rows = host.sliders(*(one.core for one in described))
         shown = {row.field: row.told(_value(message, row)) for row in rows}
-        world = {**message, "name": self.name, "preset": "", "shown": shown, "watched": True}
+        world = {**message, "name": self.name, "preset": "", "shown": shown}
         told = [world, {"tell": "guide", "text": message["hint"]}]
         if self.offered != list(shown):
             self.offered = list(shown)

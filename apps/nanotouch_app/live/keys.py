@@ -22,7 +22,7 @@ PLAIN = {
     "bracketright": "faster", "backspace": "rewind", "return": "arm", "kp_enter": "arm", "escape": "stop",
 }  # fmt: skip
 ARROWS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
-ARROW_PIXELS = 4.0
+ARROW_PIXELS, KEY_STEPS = 4.0, 3.0
 FUNCTION_KEYS = (*(f"f{number}" for number in range(1, 13)), "0")  # of choices, as board.KEYS shows them
 HEIGHTS = {"plus": True, "kp_add": True, "minus": False, "kp_subtract": False}
 SHOWN = {"c": "cards", "d": "full", "h": "help", "t": "menu"}  # what is seen of the picture, or not
@@ -62,6 +62,8 @@ class Keys:
             if not self.pressing:
                 self.pressing = True
                 self.window.ask("press", on=True)
+        elif name == "v":
+            self.picture.magnify(-KEY_STEPS if shift else KEY_STEPS)
         elif name == "z":
             self.window.ask("redo" if shift else "undo")
         elif name == FUNCTION_KEYS[-1] and self.picture.menu:

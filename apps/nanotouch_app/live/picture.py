@@ -135,6 +135,10 @@ class Picture:
             tip = message["scene"]["tip"]
             self.stage.mount(float(tip["radius"]), float(tip["half_angle"]), str(tip["shape"]))
 
+    def magnify(self, steps: float) -> None:
+        """Draw the tip's surroundings larger, by steps of the wheel."""
+        self.hear({"tell": "note", "text": f"{self.stage.magnify(steps):.3g} times as large"})
+
     def render(self) -> None:
         """Draw what is seen now."""
         size = self.window.GetSize()

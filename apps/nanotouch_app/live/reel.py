@@ -206,7 +206,7 @@ def world_of(about: Mapping[str, Any], name: str, source: str) -> dict[str, Any]
     gains, lever = about["settings"]["gains"], float(about["spring_constant"])
     spring = float(gains.get("coupling_stiffness", 0.0) / (gains["alpha_p"] * gains["alpha_f"]))
     return {
-        "tell": "world", "title": name, "source": source, "felt": "", "hint": "",
+        "tell": "world", "title": name, "source": source, "felt": "", "hint": "", "leads": "",
         "scene": scene.to_dict(), "rig": about["rig"], "settings": about["settings"], "bound": plan.bound,
         "stiffness": spring * lever / (spring + lever) if spring > 0.0 else lever, "relative_accuracy": accuracy,
         "margin": about.get("stability_margin") or np.inf, "undo": 0, "redo": 0,

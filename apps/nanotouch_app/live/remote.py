@@ -10,7 +10,7 @@ import time
 from typing import Any
 
 import nanotouch as nt
-from nanotouch.errors import Error
+from nanotouch.errors import DeviceError, Error
 from nanotouch.touch.commands import Answer
 
 from nanotouch_app.live.led import Hand
@@ -19,8 +19,10 @@ from nanotouch_app.live.reel import world_of
 ARM, RESCALE, SETTING, SCENE = 2, 4, 6, 7  # nt_event_kind of session.h
 WATCHED, LED = "watched: its program leads the hand", "your hand on the session of another program"
 LEAD = "Scroll down until you feel it."
+SIDEWAYS_HINT = "Drag over the surface: the device leads the height. Scroll to magnify."
 SIDEWAYS = "its device leads z, your mouse x and y"
 TAKEN = "another program drives this session; it may be asked again one second after its last request"
+OVERTAKEN = -1  # the status of a request without an answer
 LONGEST = 0.1  # what a hand does by itself in one turn [s]
 Message = dict[str, Any]
 
@@ -64,8 +66,9 @@ class Remote:
         if self.observer.changes != self.described:
             text, self.described = self.observer.description, self.observer.changes
             self.world, self._changed = world_of(json.loads(text), self.name, self._source()), True
-            hint = "Drag over the surface: the device leads the height." if self.sideways else LEAD
+            hint = SIDEWAYS_HINT if self.sideways else LEAD
             self.world["hint"] = hint if self.leads else ""
+            self.world["leads"] = "xy" if self.sideways else "xyz" if self.leads else ""
             self.hand = None  # it begins anew where it is, in the world as it is now
         changed, self._changed = self._changed, False
         return copy.deepcopy(self.world) if changed else None
@@ -133,7 +136,7 @@ class Remote:
 
     def answers(self) -> list[tuple[Message, Answer]]:
         """What has been decided since the last call."""
-        found = [(asked, self.lease.client.poll(asked)) for asked in self.asked]
+        found = [(asked, self._answer(asked)) for asked in self.asked]
         decided = [(self.asked.pop(asked), answer) for asked, answer in found if not answer.pending]
         for message, answer in decided:
             if message["do"] == "change" and not answer.status and self.world:
@@ -141,6 +144,15 @@ class Remote:
                 self.world[message["what"]][section][key] = message["value"]
                 self._changed = True
         return decided
+
+    def _answer(self, asked: int) -> Answer:
+        """Pending, too, while the session stands still; a refusal where another program has taken the lease."""
+        try:
+            return self.lease.client.poll(asked)
+        except DeviceError:
+            return Answer(asked, 0, 0, True, "")
+        except Error:
+            return Answer(asked, 0, OVERTAKEN, False, TAKEN)
 
     def close(self) -> None:
         """Let go."""

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import argparse
 import json
-from subprocess import Popen, TimeoutExpired
-from typing import Any, Literal
+from subprocess import TimeoutExpired
+from typing import Literal
 
 import nanotouch as nt
 from nanotouch.errors import Error, InvalidValue, require
@@ -47,29 +47,30 @@ class Shown:
         """to say: where pages find it"""
         self.leave = "Ctrl-C ends the session" if args.browser else "Q in the window leaves, Escape stops"
         if not args.browser:
-            self.process: Popen[Any] = session.live(hand=leads)
+            self.view = _live.window(session, leads)
             return
         options = ["--sideways"] if leads == "sideways" else ["--lead"] * leads
         options += ["--recorded"] * (args.record is not None) + ["--port", str(args.port or 0)]
         options += [] if args.page is None else ["--page", str(args.page)]
-        self.process, first = _live.viewed(session, PAGES, options)
-        self.words = str(json.loads(first)["words"])
+        self.view = _live.viewed(session, PAGES, options)
+        self.words = str(json.loads(self.view.first)["words"])
 
     def is_open(self) -> bool:
         """Until the person has left; :class:`~nanotouch.errors.Error` where it has died."""
-        status = self.process.poll()
+        status = self.view.process.poll()
         if status:
-            raise Error("the view has died; the session has ended in order")
+            raise Error(f"the view has died ({self.view.last_words}); the session has ended in order")
         return status is None
 
     def close(self) -> None:
         """It leaves when its input ends."""
-        if self.process.stdin is not None:
-            self.process.stdin.close()
+        process = self.view.process
+        if process.stdin is not None:
+            process.stdin.close()
         try:
-            self.process.wait(ENDS)
+            process.wait(ENDS)
         except TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
-        if self.process.stdout is not None:
-            self.process.stdout.close()
+            process.kill()
+            process.wait()
+        if process.stdout is not None:
+            process.stdout.close()

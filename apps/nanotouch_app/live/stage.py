@@ -25,6 +25,7 @@ LIGHTS = (((-1.3, -0.9, 2.1), 0.85), ((1.2, 1.6, 1.2), 0.3))  # from where to th
 FAR = 0.14  # no tip is drawn higher above the surface than this [scene units]
 LIFTED = 0.004  # what is laid on the surface is drawn so much above it [scene units]
 RAISED = 0.1  # of what the camera looks at, over the middle of the surface [scene units]
+ZOOM, CLOSEST = 1.25, 16.0  # how many times as large by a step, and at most
 VIEWS = {"0": (0.0, 32.0, 1.86), "1": (0.0, 32.0, 1.86), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.86),
          "4": (0.0, 22.0, 0.75), "5": (0.0, 8.0, 1.5)}  # fmt: skip  # turn, height [degrees], distance [scene units]
 
@@ -226,6 +227,7 @@ class Stage:
 
     def update(self, seen: Seen) -> None:
         """Move tip, lever, shadow and trace; never the surface, of which other tiles are shown fine."""
+        self._look_at(self.apex(seen))
         if self.near is None and self.fine:
             self.near = set()  # with this picture all tiles are sent
         elif (near := self.tiles.near(*self._pixels(*self._place(seen)))) != self.near:
@@ -272,17 +274,38 @@ class Stage:
     def camera(self, view: str, at: Floats | None = None) -> None:
         """One of the views 0 .. 5; 4 looks at the tip."""
         turn, height, distance = VIEWS[view]
-        middle = at if at is not None and view == "4" else self.centre
-        focus = middle + np.array([0.0, 0.0, RAISED])
+        self.middle = at if at is not None and view == "4" else self.centre
+        self.distance, self.magnification = distance, 1.0
         turn, height = math.radians(turn), math.radians(height)
-        away = distance * np.array([math.sin(turn) * math.cos(height), -math.cos(turn) * math.cos(height),
-                                    math.sin(height)])  # fmt: skip
+        away = (math.sin(turn) * math.cos(height), -math.cos(turn) * math.cos(height), math.sin(height))
         camera = self.renderer.GetActiveCamera()
         camera.SetViewAngle(36.0)
-        camera.SetFocalPoint(*focus)
-        camera.SetPosition(*(focus + away))
+        camera.SetFocalPoint(0.0, 0.0, 0.0)
+        camera.SetPosition(*away)
         camera.SetViewUp(0.0, 1.0 if view == "2" else 0.0, 0.0 if view == "2" else 1.0)
+        self._look_at(self.middle)
         self.renderer.ResetCameraClippingRange()
+
+    def magnify(self, steps: float) -> float:
+        """By steps of the wheel, about the tip; how many times as large as the view was chosen. A drag over the picture
+        leads the tip by so much less."""
+        self.magnification = min(max(self.magnification * ZOOM**steps, 1.0), CLOSEST)
+        return self.magnification
+
+    def turn(self, right: float, up: float) -> None:
+        """By angles [degrees]."""
+        camera = self.renderer.GetActiveCamera()
+        camera.Azimuth(-right)
+        camera.Elevation(-up)
+        camera.OrthogonalizeViewUp()
+
+    def _look_at(self, apex: Floats) -> None:
+        """The picture grows about the tip, which is seen where it was."""
+        camera, share = self.renderer.GetActiveCamera(), 1.0 / self.magnification
+        focus = apex + share * (self.middle - apex) + np.array([0.0, 0.0, RAISED * share])
+        away = np.array(camera.GetPosition()) - np.array(camera.GetFocalPoint())
+        camera.SetFocalPoint(*focus)
+        camera.SetPosition(*(focus + self.distance * share / np.linalg.norm(away) * away))
 
     def pixel(self, place: Floats) -> Floats:
         """Where a place in scene units is on the window [pixels]."""

@@ -233,7 +233,7 @@ class Window:
             self.picture.sliders.held = slider
             self.picture.sliders.drag(self.at[0])
         elif self._in(self.picture.layout.view, self.at):
-            self.dragging = "tip"
+            self.dragging = "camera" if self.interactor.GetControlKey() else "tip"
 
     def on_board(self, number: int | None) -> bool:
         """One of the choices of the board."""
@@ -278,10 +278,7 @@ class Window:
         elif self.dragging == "height":
             self.ask("wheel", steps=-fine * way[1] / 4.0)
         elif self.dragging == "camera":
-            camera = self.picture.scene.GetActiveCamera()
-            camera.Azimuth(-TURN * way[0])
-            camera.Elevation(-TURN * way[1])
-            camera.OrthogonalizeViewUp()
+            self.picture.stage.turn(*(TURN * way))
 
     def drag(self, pixels: Any) -> None:
         """The tip, by a way on the screen."""
@@ -296,8 +293,11 @@ class Window:
         return FINE if self.interactor.GetShiftKey() else 1.0
 
     def wheel(self, steps: float) -> None:
-        """Down and up."""
-        self.step(steps, "wheel")
+        """Down and up; nearer and farther with control, and where the height is not led from here."""
+        if self.interactor.GetControlKey() or "z" not in self.picture.seen.world.get("leads", "xyz"):
+            self.picture.magnify(-steps * self.fine)
+        else:
+            self.step(steps, "wheel")
 
     def step(self, steps: float, device: str) -> None:
         """Down and up, by what the hand is moved with."""

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pointer, wheel, touch screen and keys: what live/window.py does with mouse and keys.
 
-const FINE = 0.1, ARROW = 6, CLICK = 100; // with shift; [pixels] of an arrow; of the wheel to a step
+const FINE = 0.1, ARROW = 6; // with shift; [pixels] of an arrow
+const CLICK = 100, KEY_STEPS = 3; // of the wheel to a step [pixels]; of the key that magnifies [steps]
 const PLAIN = { r: "retract", Escape: "stop", Enter: "arm", p: "pause", Pause: "pause", ".": "step", "[": "slower", "]": "faster",
   Backspace: "rewind" };
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Input {
   // own: what the page itself does by a key (views, light, sound, ...); reach(pixels): the way that a drag means;
-  // by(device): what the hand is moved with
-  constructor(place, { ask, reach, turn, own, by }) {
-    Object.assign(this, { place, ask, reach, turn, own, by, pointers: new Map(), presses: false });
+  // by(device): what the hand is moved with; lifts(): whether it leads the height
+  constructor(place, { ask, reach, turn, magnify, lifts, own, by }) {
+    Object.assign(this, { place, ask, reach, turn, magnify, lifts, own, by, pointers: new Map(), presses: false });
     place.addEventListener("pointerdown", (event) => this.#down(event));
     place.addEventListener("pointermove", (event) => this.#move(event));
     for (const name of ["pointerup", "pointercancel"]) place.addEventListener(name, (event) => this.pointers.delete(event.pointerId));
@@ -26,7 +27,7 @@ export class Input {
     this.place.focus({ preventScroll: true });
     this.place.setPointerCapture(event.pointerId);
     if (event.pointerType === "touch") this.by("finger");
-    const what = event.button === 2 || event.target.closest("#rail") ? "height" : event.button === 1 ? "camera" : "tip";
+    const what = event.button === 2 || event.target.closest("#rail") ? "height" : event.button === 1 || event.ctrlKey ? "camera" : "tip";
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY, what });
     event.preventDefault();
   }
@@ -51,9 +52,11 @@ export class Input {
   #wheel(event) {
     if (event.target.closest(".panel")) return;
     event.preventDefault();
-    this.by("wheel");
     const turned = (event.deltaY || event.deltaX) * (event.deltaMode === 1 ? 33 : 1); // shift turns it sideways
-    this.ask({ do: "wheel", steps: Math.min(Math.max(turned / CLICK, -4), 4) * (event.shiftKey ? FINE : 1) });
+    const steps = Math.min(Math.max(turned / CLICK, -4), 4) * (event.shiftKey ? FINE : 1);
+    if (event.ctrlKey || !this.lifts()) return this.magnify(-steps); // two fingers on a track pad that part, too
+    this.by("wheel");
+    return this.ask({ do: "wheel", steps });
   }
 
   #stepped(steps) {
@@ -92,7 +95,8 @@ export class Input {
     else if (key === " ") {
       if (!this.presses) this.ask({ do: "press", on: true });
       this.presses = true;
-    } else if (key === "z") this.ask({ do: event.shiftKey ? "redo" : "undo" });
+    } else if (key === "v") this.magnify(event.shiftKey ? -KEY_STEPS : KEY_STEPS);
+    else if (key === "z") this.ask({ do: event.shiftKey ? "redo" : "undo" });
     else return this.own(key, event);
     return true;
   }

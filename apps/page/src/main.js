@@ -91,7 +91,7 @@ function hear(message) {
   if (message.tell === "world") {
     sliders.take(message);
     stage.mount(message.scene.tip);
-    document.body.classList.toggle("watched", Boolean(message.watched)); // no samples, tasks or pauses of another program
+    document.body.classList.toggle("watched", "leads" in message); // no samples, tasks or pauses of another program
     if (task && state.own) ask({ do: "task", name: task, lay: true });
     task = null;
   }
@@ -226,10 +226,12 @@ async function savePicture() {
 
 const reach = (pixels) => (seen.now && stage.grid ? stage.dragged(stage.apex(seen.now), pixels) : [0, 0]);
 const turn = (dx, dy) => { stage.turn(dx, dy); dirty = true; };
+const magnify = (steps) => { if (stage.grid) seen.note(`${Number(stage.magnify(steps).toPrecision(3))} times as large`, false); };
+const lifts = () => (seen.world?.leads ?? "xyz").includes("z");
 new Input(byId("view"), { ask: (message) => {
   if (message.do === "stop" && words.close()) return;
   ask(message);
-}, reach, turn, own, by });
+}, reach, turn, magnify, lifts, own, by });
 for (const gesture of ["pointerdown", "keydown"]) window.addEventListener(gesture, () => hands.wake(), { once: true, capture: true });
 for (const button of document.querySelectorAll("[data-act]")) button.onclick = () => ask({ do: button.dataset.act });
 for (const button of document.querySelectorAll("[data-own]")) button.onclick = (event) => own(button.dataset.own, event);

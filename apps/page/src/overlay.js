@@ -4,6 +4,7 @@
 import { digits, stepUp } from "./units.js";
 
 const BAND = 0.15, RING = 13; // of the picture's height: the band under the largest planned force; [pixels]
+const BAR = 80; // least length of the scale bar [pixels]
 const BARS = 60; // that the bars of force take below the large number [pixels]
 const NARROW = 480; // a phone's [pixels]
 const squeezed = (share) => Math.sign(share) * Math.sqrt(Math.min(Math.abs(share), 1));
@@ -47,9 +48,8 @@ export class Overlay {
   }
 
   #scales(stage, palette) {
-    const { painter } = this, { grid } = stage, length = stepUp(0.12 * grid.width * grid.unit);
-    const a = stage.pixel([0.02, 0, 0]), b = stage.pixel([0.02 + length / grid.unit, 0, 0]);
-    const pixels = Math.hypot(b[0] - a[0], b[1] - a[1]), y = painter.height - 22;
+    const { painter } = this, { perMetre } = stage, length = stepUp(BAR / perMetre);
+    const pixels = length * perMetre, y = painter.height - 22;
     const told = this.#told(stage, painter.width < NARROW), has = Boolean(told);
     const wide = 36 + Math.max(pixels + 10 + painter.widthOf(digits(length, "m", 1)), has ? 130 + painter.widthOf(told) : 0);
     painter.box(8, y - (has ? 40 : 12), wide, has ? 52 : 24, palette.panel, 0.86);

@@ -17,6 +17,7 @@ import { dented, grid, laidOn, lever, stepped, stripOn, tile, tileValues, turned
 
 const TILE = 128, MOST = 256; // pixels to a side of a tile, and of the whole mesh
 const GLASSY = 0.45; // of a tip that dents the sample
+const ANGLE = 36; // of the camera, from above to below [degrees]
 const unit = (colour) => colour.map((part) => part / 255);
 const radians = (degrees) => (degrees * Math.PI) / 180;
 
@@ -245,6 +246,7 @@ export class Stage {
     if (!this.tip) return;
     const at = this.apex(now), { grid: map, constants } = this;
     this.tip.setPosition(...at);
+    this.#lookAt(at);
     const bend = seen.load > 0 ? constants.BEND * Math.min(Math.max(seen.force / seen.load, -1.5), 1.5) : 0;
     this.#set(this.leverData, lever(at, bend, constants));
     const above = Math.max(at[2] - (map.at(now.tip[0], now.tip[1]) - map.low) * map.scale, 0), [right, back] = constants.CAST;
@@ -293,15 +295,36 @@ export class Stage {
 
   camera(view, at) {
     const [turn, height, distance] = this.constants.VIEWS[view];
-    const middle = at && view === "4" ? at : [0.5 * this.grid.width, 0.5 * this.grid.height, 0];
-    const focus = [middle[0], middle[1], middle[2] + 0.12];
-    const camera = this.renderer.getActiveCamera();
-    camera.setViewAngle(36);
-    camera.setFocalPoint(...focus);
-    const [a, b] = [radians(turn), radians(height)];
-    camera.setPosition(focus[0] + distance * Math.sin(a) * Math.cos(b), focus[1] - distance * Math.cos(a) * Math.cos(b),
-      focus[2] + distance * Math.sin(b));
+    const camera = this.renderer.getActiveCamera(), [a, b] = [radians(turn), radians(height)];
+    this.middle = at && view === "4" ? at : [0.5 * this.grid.width, 0.5 * this.grid.height, 0];
+    Object.assign(this, { distance, magnification: 1 });
+    camera.setViewAngle(ANGLE);
+    camera.setFocalPoint(0, 0, 0);
+    camera.setPosition(Math.sin(a) * Math.cos(b), -Math.cos(a) * Math.cos(b), Math.sin(b));
     camera.setViewUp(0, view === "2" ? 1 : 0, view === "2" ? 0 : 1);
+    this.#lookAt(this.middle);
+  }
+
+  // By steps of the wheel, about the tip; how many times as large. A drag leads the tip by so much less.
+  magnify(steps) {
+    const { ZOOM, CLOSEST } = this.constants;
+    this.magnification = Math.min(Math.max(this.magnification * ZOOM ** steps, 1), CLOSEST);
+    return this.magnification;
+  }
+
+  // The picture grows about the tip, which is seen where it was.
+  #lookAt(apex) {
+    const camera = this.renderer.getActiveCamera(), share = 1 / this.magnification;
+    const from = camera.getFocalPoint(), away = camera.getPosition().map((part, axis) => part - from[axis]);
+    const focus = apex.map((part, axis) => part + share * (this.middle[axis] - part) + (axis === 2 ? this.constants.RAISED * share : 0));
+    const far = (this.distance * share) / Math.hypot(...away);
+    camera.setFocalPoint(...focus);
+    camera.setPosition(...focus.map((part, axis) => part + far * away[axis]));
+  }
+
+  // Pixels of a length at the depth of what the camera looks at [1/m].
+  get perMetre() {
+    return this.pixels[1] / (2 * (this.distance / this.magnification) * Math.tan(radians(ANGLE) / 2) * this.grid.unit);
   }
 
   turn(dx, dy) {

@@ -9,7 +9,8 @@ import itertools
 import os
 import subprocess
 import sys
-from typing import Any, Literal, Protocol
+from pathlib import Path
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -34,6 +35,21 @@ class Watched(Protocol):
         """Show every tick under a name."""
 
 
+class View(NamedTuple):
+    """One that shows something."""
+
+    process: subprocess.Popen[str]
+    first: str
+    """what it has said then"""
+    said: Path
+    """what it says of what goes wrong"""
+
+    @property
+    def last_words(self) -> str:
+        """The last line of that."""
+        return (self.said.read_text(errors="replace").strip().splitlines() or ["it said nothing"])[-1]
+
+
 def watch(session: Watched, hand: bool | Literal["sideways"] = False) -> subprocess.Popen[str]:
     """Open a window that watches this session, in a process of its own; the session never waits for it. With ``hand``
     its mouse, keys and other devices move the simulated hand, too, while no other program holds the lease; "sideways":
@@ -42,15 +58,19 @@ def watch(session: Watched, hand: bool | Literal["sideways"] = False) -> subproc
     Returns that process once its first picture is drawn; :class:`~nanotouch.errors.Error` where it cannot be. Not while
     the session runs in its own thread.
     """
+    return window(session, hand).process
+
+
+def window(session: Watched, hand: bool | Literal["sideways"]) -> View:
+    """That of :func:`watch`, with what it says."""
     if importlib.util.find_spec("vtkmodules") is None:
         raise missing("vtk", "view")
     options = ["--sideways"] if hand == "sideways" else ["--lead", "--hand", "auto"] if hand else []
-    return viewed(session, WINDOW, options)[0]
+    return viewed(session, WINDOW, options)
 
 
-def viewed(session: Watched, view: str, options: list[str]) -> tuple[subprocess.Popen[str], str]:
-    """The process of a view, and the line that it says once it shows something; :class:`~nanotouch.errors.Error` with
-    its last words where it cannot."""
+def viewed(session: Watched, view: str, options: list[str]) -> View:
+    """A view, once it shows something; :class:`~nanotouch.errors.Error` with its last words where it cannot."""
     if not session._name:  # a second view watches beside the first one
         session.publish(f"session-{os.getpid()}-{next(_numbers)}")
     name = session._name
@@ -67,15 +87,16 @@ def viewed(session: Watched, view: str, options: list[str]) -> tuple[subprocess.
             stdout=subprocess.PIPE, stderr=errors, env=environment, text=True,
         )  # fmt: skip
     assert process.stdout is not None
-    first = next((line for line in process.stdout if line.startswith("{")), "")  # others are a library's own
-    if not first:  # it has ended
+    made = View(
+        process, next((line for line in process.stdout if line.startswith("{")), ""), said
+    )  # others are a library's own
+    if not made.first:  # it has ended
         process.wait()
         for wire in (process.stdin, process.stdout):
             if wire is not None:
                 wire.close()
-        last = said.read_text(errors="replace").strip().splitlines() or ["it said nothing"]
-        raise Error(f"the view could not be opened: {last[-1]}")
-    return process, first
+        raise Error(f"the view could not be opened: {made.last_words}")
+    return made
 
 
 def _surface_of(session: Watched) -> tuple[Any, tuple[float, float], tuple[float, float]]:
