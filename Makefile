@@ -3,6 +3,8 @@
 
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
+# Of the tests in Python, which also wait: for processes, deadlines and sockets.
+WORKERS ?= $(shell expr $(JOBS) + 1)
 # JOBS processes run beside each other, on matrices that are too small for threads: those of the tests' references took
 # five times the processor time with two.
 export OPENBLAS_NUM_THREADS := 1
@@ -35,7 +37,7 @@ test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
 	@tools/setup.sh test
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev
-	@failed=0; ctest --preset dev -j $(JOBS) || failed=1; $(VENV)/python -m pytest -n $(JOBS) || failed=1; exit $$failed
+	@failed=0; ctest --preset dev -j $(JOBS) || failed=1; $(VENV)/python -m pytest -n $(WORKERS) --dist worksteal || failed=1; exit $$failed
 
 wheels:  ## a wheel for each Python of 3.11 to 3.14 that is here, with a Ceres free of the GPL, tested; PYTHONS=3.11 limits it; build/wheels
 	@tools/setup.sh wheels
@@ -57,7 +59,7 @@ fuzz:  ## random input to each entry of the C library, with sanitizers, going on
 
 coverage:  ## lines, branches and MC/DC that the C tests reach, against their floors (docs/assurance.md); a quarter of an hour
 	@tools/setup.sh coverage
-	@python3 tools/coverage.py --jobs $(JOBS) $(if $(RAISE),--raise) $(if $(MISSING),--missing $(MISSING))
+	@NANOTOUCH_ALL_DRAWS=1 python3 tools/coverage.py --jobs $(JOBS) $(if $(RAISE),--raise) $(if $(MISSING),--missing $(MISSING))
 
 sanitize:  ## clang's address, undefined-behaviour and thread sanitizers over all C tests and those of the Python extensions
 	@tools/setup.sh sanitize
@@ -90,6 +92,9 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@$(VENV)/python tests/heavy/refusals.py
 	@$(VENV)/python tests/heavy/bridges.py
 	@NANOTOUCH_ALL_BRIDGES=1 $(VENV)/python -m pytest -q tests/python/test_bridges.py
+	@NANOTOUCH_ALL_DRAWS=1 build/dev/tests/c/test_session_faults_three
+	@NANOTOUCH_ALL_DRAWS=1 build/dev/tests/c/test_session_adversary
+	@NANOTOUCH_ALL_DRAWS=1 $(VENV)/python -m pytest -q -n $(JOBS) $(shell grep -l '^import draws' tests/python/test_*.py)
 	@$(VENV)/python tests/heavy/lines.py
 	@$(VENV)/python tests/heavy/extremes.py
 	@$(VENV)/python tests/heavy/force_tables.py
@@ -142,6 +147,7 @@ conformance:  ## what each backend keeps of the rules in docs/hal.md, as a table
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench (docs/speed.md: tests/bench/speed.py)
 	@tools/setup.sh test
+	@tools/setup.sh demo
 	@cmake --preset release --log-level WARNING >/dev/null
 	@cmake --build --preset release --target bench
 	@$(VENV)/python tests/bench/bench_session.py

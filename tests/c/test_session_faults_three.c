@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Three faults at once, every three of the table: the force stays below the guarantee unless a turned stage is lifted
- * unseen, for which there is no bound. */
+ * Three faults at once, a quarter of all threes of the table, and with NANOTOUCH_ALL_DRAWS=1 every three: the force
+ * stays below the guarantee unless a turned stage is lifted unseen, for which there is no bound. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -30,9 +31,10 @@ static int is_unseen(const fault_case *const three[3])
     return turned && (blind || deflection);
 }
 
-static void every_three_faults_keep_the_bounds(void **state)
+static void three_faults_keep_the_bounds(void **state)
 {
     (void)state;
+    const int share = getenv("NANOTOUCH_ALL_DRAWS") ? 1 : 4;
     static loop l;
     double worst = 0.0, unseen = 0.0;
     int triples = 0;
@@ -40,7 +42,7 @@ static void every_three_faults_keep_the_bounds(void **state)
         for (int j = 0; j < i; j++)
             for (int k = 0; k < j; k++) {
                 const fault_case *const three[3] = {&fault_cases[i], &fault_cases[j], &fault_cases[k]};
-                if (is_slow(three[0]) || is_slow(three[1]) || is_slow(three[2]))
+                if ((i + j + k) % share != 0 || is_slow(three[0]) || is_slow(three[1]) || is_slow(three[2]))
                     continue;
                 outcome o;
                 start(&l, three[0], three[1]);
@@ -64,6 +66,6 @@ static void every_three_faults_keep_the_bounds(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_three_faults_keep_the_bounds)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(three_faults_keep_the_bounds)};
     return cmocka_run_group_tests(tests, press, NULL);
 }

@@ -11,9 +11,11 @@ EDGE = 0.5
 """a point that lies on the frame is seen [pixels]"""
 
 
-def hidden(figure: Any) -> list[str]:
-    """The series, areas and images of which nothing lies within the limits of their axes, in words."""
-    figure.draw_without_rendering()
+def hidden(figure: Any, drawn: bool = False) -> list[str]:
+    """The series, areas and images of which nothing lies within the limits of their axes, in words. What has been
+    drawn since its last change has its limits and its layout."""
+    if not drawn:
+        figure.draw_without_rendering()
     found = []
     for panel in figure.axes:
         if not panel.get_visible() or panel.get_label() == "<colorbar>":

@@ -30,7 +30,7 @@ def _own_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def marker(tmp_path: Path) -> Path:
+def marker(tmp_path: Path, undrawn: None) -> Path:
     """A folder whose ``height.png`` is a shared object that leaves ``ran`` when it is loaded, with Python modules that
     do the same, under names that ours import."""
     compiler = shutil.which("cc")

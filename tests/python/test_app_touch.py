@@ -45,8 +45,8 @@ def no_display(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def no_view(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For tests of other things: VTK takes its time."""
+def no_view(monkeypatch: pytest.MonkeyPatch, undrawn: None) -> None:
+    """For tests of other things: pictures take their time."""
     monkeypatch.setattr(view, "render_png", lambda _topography, _recording, path, **_: Path(path).touch())
 
 

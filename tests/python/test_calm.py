@@ -9,6 +9,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import draws
 import nanotouch as nt
 import numpy as np
 import pytest
@@ -175,7 +176,7 @@ def test_response_is_that_of_a_master_that_is_moved(force_gain: float, delay: fl
     rig, settings, _ = scaled(2e-4)
     settings["gains.force_gain"], settings["gains.delay"] = force_gain, delay
     k_c = rig.probe.spring_constant
-    for frequency in (20.0, 200.0, 250.0, 1250.0):
+    for frequency in draws.some((250.0, 1250.0, 20.0, 200.0), 2):
         for stiffness in (0.0, 30.0):
             reflected = settings.gains.alpha_f * settings.gains.alpha_p * stiffness * k_c / (stiffness + k_c)
             found = complex(margins.response(rig, settings, stiffness, frequency).impedance[0])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 import sys
 from pathlib import Path
@@ -98,6 +99,11 @@ def sticky(modulus: float, hamaker: float = 6e-20) -> Scene:
     )
 
 
+@functools.cache
+def truth_of(modulus: float, tolerance: float) -> reference.DeformedScene:
+    return reference.deformed_scene(sticky(modulus), tolerance=tolerance)
+
+
 def errors_of(scene: Scene, plan: Plan, truth: reference.DeformedScene, history: str) -> np.ndarray:
     """At gaps beside the folds and far from them, over the larger of force and scale."""
     capture, release = plan.explain()["capture_gap"], plan.explain()["release_gap"]
@@ -112,20 +118,20 @@ def errors_of(scene: Scene, plan: Plan, truth: reference.DeformedScene, history:
 def test_a_surface_bulges_and_jumps_towards_the_tip(modulus: float, jumps: bool) -> None:
     """From soft to where the tail goes on into contact: forces within the bound, the jump within its distance."""
     scene = sticky(modulus)
-    plan, truth = scene.plan(5e-3), reference.deformed_scene(scene, tolerance=1e-5)
+    plan, truth = scene.plan(5e-3), truth_of(modulus, 1e-5)
     facts = plan.explain()
     assert facts["deforms"]
     assert truth.jumps == jumps
     assert facts["capture_gap"] == pytest.approx(truth.capture_gap, abs=max(plan.fold_shift_m, 1e-18))
     for history in ("approach", "retract"):
-        assert np.all(errors_of(scene, plan, reference.deformed_scene(scene, 1e-5), history) <= plan.bound)
+        assert np.all(errors_of(scene, plan, truth, history) <= plan.bound)
 
 
 @pytest.mark.parametrize("modulus", [3e10, 1e12])
 def test_beyond_what_a_table_keeps_the_finest_one_is_taken(modulus: float) -> None:
     """With its own bound, far below what a rigid sample errs by, and a warning."""
     scene = sticky(modulus)
-    plan, truth = scene.plan(1e-7), reference.deformed_scene(scene, tolerance=1e-8)
+    plan, truth = scene.plan(1e-7), truth_of(modulus, 1e-8)
     assert plan.explain()["deforms"]
     assert 1e-7 < plan.bound < 0.01 * plan.explain()["rigid_error"]
     assert any("more than demanded" in warning.text for warning in plan.warnings)
@@ -151,7 +157,7 @@ def test_a_stricter_demand_has_no_looser_bound(name: str, quantity: str) -> None
 def test_with_no_demand_a_stiff_sample_is_rigid(modulus: float) -> None:
     """Beside contact the tail pulls more than that, and less than the bound."""
     scene = sticky(modulus)
-    plan, truth = scene.plan(bound="exact"), reference.deformed_scene(scene, tolerance=1e-8)
+    plan, truth = scene.plan(bound="exact"), truth_of(modulus, 1e-8)
     capture = plan.explain()["capture_gap"]
     gaps = capture * np.array([3.0, 1.5, 1.1])
     error = np.abs([plan.force(gap) for gap in gaps] - truth.force(gaps, "approach")) / plan.scale
@@ -169,7 +175,7 @@ def test_the_bound_of_a_surface_with_properties_is_that_of_its_softest_place(dem
     scene = sticky(stiff)
     surface = Surface.touched_by(scene, flat, youngs_modulus=modulus)
     plan = scene.plan(demand, surface=surface) if demand else scene.plan(bound="exact", surface=surface)
-    truth = reference.deformed_scene(sticky(soft), tolerance=1e-8)
+    truth = truth_of(soft, 1e-8)
     gaps = plan.explain()["capture_gap"] * np.array([3.0, 1.5, 1.1])
     at = np.column_stack([np.full(3, 40e-9), np.full(3, 80e-9), gaps])
     error = np.abs(Interaction(plan, "approach").eval(at).Fz - truth.force(gaps, "approach")) / plan.scale

@@ -70,7 +70,7 @@ def test_built_in_surfaces_are_calm_without_a_warning(topography: Callable[[], n
     assert session.settings.gains.alpha_f * session.plan.pull_off_force > 0.3
 
 
-def test_touch_is_felt(tmp_path: Path) -> None:
+def test_touch_is_felt(tmp_path: Path, undrawn: None) -> None:
     """The pull-off of the default touch is at least 0.3 N at the hand, with a margin."""
     assert main(["touch", "--out", str(tmp_path / "out"), "--no-window"]) == 0
     recording = nt.record.read(tmp_path / "out" / "recording.mcap")
@@ -78,7 +78,7 @@ def test_touch_is_felt(tmp_path: Path) -> None:
     assert (recording.state == 0).all()
 
 
-def test_a_file_that_scales_is_left_alone(tmp_path: Path) -> None:
+def test_a_file_that_scales_is_left_alone(tmp_path: Path, undrawn: None) -> None:
     file = tmp_path / "scene.toml"
     file.write_text("[gains]\nalpha_f_N_per_N = 2e6\n")
     assert main(["touch", "--scene", str(file), "--out", str(tmp_path / "out"), "--no-window", "--duration", "2s"]) == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import draws
 import nanotouch as nt
 import numpy as np
 import pytest
@@ -19,12 +20,13 @@ SPIKE = 8e-9
 
 
 def test_a_scanned_spike_tells_its_radius_and_the_tips() -> None:
-    """20 scans in contact mode with noise of the loop's reading and 0.05 nm of the height, each with its own place of
+    """Scans in contact mode with noise of the loop's reading and 0.05 nm of the height, each with its own place of
     the spike between the pixels. Spheres add: R + R_s."""
     scene = nt.Scene(tip={"radius": 10e-9}, medium={"relative_humidity": 0.0})
     plan = scene.plan(0.3, surface=nt.Surface.touched_by(scene, nt.surface.spikes(160e-9, 160, radius=SPIKE)))
     rig, inside = nt.Rig(), 0
-    for seed in range(20):
+    scans = draws.count(8, 20)
+    for seed in range(scans):
         random = np.random.default_rng(seed)
         x, y = 50e-9 + random.uniform(-1.0, 1.0, 2) * 1.5e-9
         area = {"x": x, "y": y, "width": 60e-9, "height": 60e-9, "pixels": 40, "lines": 40, "line_rate": 0.5}
@@ -34,7 +36,7 @@ def test_a_scanned_spike_tells_its_radius_and_the_tips() -> None:
         found = images.apex_radius(noisy)
         assert found.radius == pytest.approx(10e-9 + SPIKE, rel=0.1)
         inside += found.low <= 10e-9 + SPIKE <= found.high
-    assert inside >= 17  # of 20 at 95 %: fewer come by chance once in 60
+    assert inside >= 0.85 * scans  # at 95 % of each: of 20, fewer than 17 come by chance once in 60
 
 
 @pytest.mark.parametrize(("tip", "pixel"), [(5e-9, 1e-9), (10e-9, 2e-9), (30e-9, 1e-9)])

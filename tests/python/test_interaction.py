@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import cycles
+import draws
 import numpy as np
 import pytest
 import random_scenes
@@ -109,7 +110,7 @@ def test_plans_keep_the_bound_over_topography(seed: int) -> None:
     """Random scenes near the presets over random bumps, against the exact law with the radius of each place."""
     rng = np.random.default_rng(seed)
     forms = []
-    for index in range(8):
+    for index in range(draws.count(4, 8)):
         scene = random_scenes.near_preset(rng)
         scene.tip.shape = "paraboloid"
         scene.range.minimum_gap = min(scene.range.minimum_gap, 0.0)

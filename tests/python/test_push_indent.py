@@ -27,7 +27,7 @@ def test_push_tells_what_the_library_does(tmp_path: Path, capsys: pytest.Capture
     assert (out / "push.png").stat().st_size > 10_000
 
 
-def test_push_on_a_lever(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_push_on_a_lever(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     out = tmp_path / "hung"
     assert main(["push", "--to", "0.4um,0um", "--seed", "3", "--lever", "1N/m,1N/m,0.5N/m", "--out", str(out)]) == 0
     facts = json.loads((out / "push.json").read_text())
@@ -39,7 +39,9 @@ def test_push_on_a_lever(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert "the lever gives way by" in capsys.readouterr().out
 
 
-def test_push_that_does_not_arrive_has_status_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_push_that_does_not_arrive_has_status_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None
+) -> None:
     """Closer than the noise of a look allows in 200 pushes. It says so."""
     assert main(["push", "--to", "0.2um,0um", "--tolerance", "1pm", "--out", str(tmp_path / "a")]) == 1
     told = "it did not arrive: given up after 200 pushes, without a look within 1 pm of the target"
@@ -70,7 +72,9 @@ def test_indent_that_stays_elastic_says_so(tmp_path: Path, capsys: pytest.Captur
     assert "it stayed elastic: no dent" in capsys.readouterr().out
 
 
-def test_a_touch_tells_the_dents_that_it_leaves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_touch_tells_the_dents_that_it_leaves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None
+) -> None:
     scene = tmp_path / "soft.toml"
     scene.write_text(
         '[tip]\nmaterial = "diamond"\n[sample]\nmaterial = "gold"\nyield_strength_GPa = 0.35\ndents = "yes"\n'

@@ -227,7 +227,7 @@ def test_check_reads_scene_and_loop_too(capsys: pytest.CaptureFixture[str], tmp_
 
 @pytest.mark.parametrize("command", ["plan {}", "margins {} --no-map", "touch --scene {} --mode curve --surface flat",
                                      "curve --scene {}"])  # fmt: skip
-def test_a_rehearsal_needs_one_word(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_rehearsal_needs_one_word(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, undrawn: None):
     """backend = "simulated" in a file of a real half: all commands take it."""
     monkeypatch.chdir(tmp_path)
     Path("rig.toml").write_text(FILE.read_text().replace('"spidev"', '"simulated"'))

@@ -256,7 +256,7 @@ def test_a_set_point_without_a_steady_motion_is_forecast() -> None:
         scan.forecast(nt.Scanner(held.plan(), None, rig), held)
 
 
-def test_a_steady_image_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_steady_image_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     """The amplitude is that of the set point everywhere; trace and retrace are one."""
     for module in ("gwyfile", "SurfaceTopography", "matplotlib"):
         pytest.importorskip(module)
@@ -282,7 +282,7 @@ def test_phase_feedback_wants_the_resonance() -> None:
         nt.Scanner(dry().plan(), settings, rig(), drive)
 
 
-def test_the_tilt_of_a_scan_is_taken_out_before_it_is_touched(tmp_path: Path, capsys: Any) -> None:
+def test_the_tilt_of_a_scan_is_taken_out_before_it_is_touched(tmp_path: Path, capsys: Any, undrawn: None) -> None:
     for module in ("gwyfile", "SurfaceTopography"):
         pytest.importorskip(module)
     from nanotouch_app.main import main
@@ -297,7 +297,7 @@ def test_the_tilt_of_a_scan_is_taken_out_before_it_is_touched(tmp_path: Path, ca
     assert np.ptp(images.read(out / "surface.gwy").heights) < 1e-9
 
 
-def test_two_commands_from_scan_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_two_commands_from_scan_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     """Scan, then touch what was scanned."""
     for module in ("gwyfile", "SurfaceTopography", "matplotlib", "mcap"):
         pytest.importorskip(module)

@@ -187,7 +187,9 @@ def test_an_effective_modulus_is_that_of_the_contact() -> None:
         nt.Surface.touched_by(scene, level, effective_modulus=np.full((4, 4), 5e9), youngs_modulus=np.full((4, 4), 5e9))
 
 
-def test_a_toml_file_names_them_for_plan_touch_and_live(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_toml_file_names_them_for_plan_touch_and_live(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None
+) -> None:
     """All three have the surface of the arrays; the recording names files and digests, from which it is made again."""
     pytest.importorskip("mcap")
     film(tmp_path)

@@ -15,7 +15,7 @@ from nanotouch.images import moved
 from nanotouch_app.examples import EXAMPLES
 from nanotouch_app.main import main
 from nanotouch_app.studies import workflow
-from nanotouch_app.studies.workflow import steps
+from nanotouch_app.studies.workflow import film, steps
 
 pytest.importorskip("cv2")
 
@@ -92,6 +92,8 @@ def test_all_the_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Maps show a sphere within twice the way v/K_I < 9 nm that the loop lags, the target is met within the operator's
     30 nm and what it cannot see, and the map follows as well as it looks. By the command, as its example has it."""
     kept, work = [], steps.work
+    for part in ("SCANNING", "TOUCHING", "PUSHING", "LAST"):  # each picture takes a fifth of a second
+        monkeypatch.setattr(film, part, 2)
     monkeypatch.setattr(steps, "work", lambda *given: kept.append(work(*given)) or kept[0])
     ((example, _),) = EXAMPLES["workflow"]
     assert main([*shlex.split(example)[1:], "--out", str(tmp_path)]) == 0
