@@ -147,7 +147,7 @@ conformance:  ## what each backend keeps of the rules in docs/hal.md, as a table
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench (docs/speed.md: tests/bench/speed.py)
 	@tools/setup.sh test
-	@tools/setup.sh demo
+	@tools/setup.sh bench
 	@cmake --preset release --log-level WARNING >/dev/null
 	@cmake --build --preset release --target bench
 	@$(VENV)/python tests/bench/bench_session.py

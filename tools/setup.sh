@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # All the set-up of `make demo` and `make test`: system packages, .venv, libgpiod 2, the package with its extras.
-# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|lint|fuzz|coverage|sanitize|mutate|kernel|page|wheels|windows
+# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|bench|lint|fuzz|coverage|sanitize|mutate|kernel|page|wheels|windows
 set -eu
 cd "$(dirname "$0")/.."
-profile=${1:?usage: tools/setup.sh demo|docs|test|lint|fuzz|coverage|sanitize|mutate|kernel|page|wheels|windows}
+profile=${1:?usage: tools/setup.sh demo|docs|test|bench|lint|fuzz|coverage|sanitize|mutate|kernel|page|wheels|windows}
 say() {
   if [ -t 2 ] && [ -z "${NO_COLOR:-}" ]; then printf '\033[1m%s\033[0m\n' "-- $*" >&2; else echo "-- $*" >&2; fi
 }
@@ -126,9 +126,18 @@ install_dependencies() {
   esac
 }
 
+# Tests take what is soon compiled: bindings without optimisation, which are half of the time of a first build. The
+# library below them is the same. `make demo` builds all as it is released, or takes what is there; `make bench` the first.
 install_package() {
   say "Building and installing nanotouch"
-  pip install -q --no-deps --no-build-isolation --force-reinstall "${NANOTOUCH_WHEEL:-.}" # tools/release.sh has built one
+  rm -f .venv/stamp-package .venv/stamp-tested-package
+  if [ $stamp = tested-package ]; then
+    pip install -q --no-deps --no-build-isolation --force-reinstall --config-settings build-dir=build/tested \
+      --config-settings cmake.define.NANOTOUCH_BINDINGS_OPTIONS=-O0 \
+      --config-settings cmake.define.CMAKE_INTERPROCEDURAL_OPTIMIZATION=OFF .
+  else
+    pip install -q --no-deps --no-build-isolation --force-reinstall "${NANOTOUCH_WHEEL:-.}" # tools/release.sh has built one
+  fi
 }
 
 # The page's C compiler (ziglang, 100 MB): `make page` needs it; `make test` only where node can run what it made.
@@ -152,14 +161,15 @@ fetch_libgpiod
 
 # lint's packages include test's, and test's include demo's, which are those of page and kernel.
 key=$(hash_of pyproject.toml tools/lock)
-case $profile in demo | page | kernel) stamps="demo page kernel test lint" ;; test | sanitize) stamps="test lint sanitize mutate" ;; *) stamps=$profile ;; esac
+case $profile in demo | bench | page | kernel) stamps="demo page kernel test lint" ;; test | sanitize) stamps="test lint sanitize mutate" ;; *) stamps=$profile ;; esac
 if ! has_stamp "$key" $stamps; then
   install_dependencies
   echo "$key" >".venv/stamp-$profile"
 fi
 key=$(hash_of CMakeLists.txt pyproject.toml cmake libnanotouch bindings apps/nanotouch_app)
-if ! has_stamp "$key" package; then
+case $profile${NANOTOUCH_WHEEL:-} in test | sanitize | mutate | lint) stamp=tested-package ;; *) stamp=package ;; esac
+if ! has_stamp "$key" package $([ "$profile" = bench ] || echo tested-package); then
   install_package
-  echo "$key" >.venv/stamp-package
+  echo "$key" >".venv/stamp-$stamp"
 fi
 install_zig
