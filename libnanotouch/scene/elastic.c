@@ -86,7 +86,7 @@ double nt_elastic_under(const nt_plan *plan, int tails)
         if (!nt_term_rows[term]->pressure || (nt_term_rows[term]->words.tail && !tails))
             continue;
         const double hold = nt_plan_hold_gap(plan, term) * (1.0 + 1e-12);
-        const nt_law_value most = nt_elastic_sizes(plan, term, hold);
+        const nt_law_value most = nt_elastic_most(plan, term, hold);
         u += under(plan, most);
         s.all_F += most.F;
         s.all_k += most.k;
@@ -108,7 +108,7 @@ static double radius_before_contact(const nt_plan *plan, double gap)
     double u = 0.0;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (nt_term_rows[term]->pressure)
-            u += under(plan, nt_elastic_sizes(plan, term, gap));
+            u += under(plan, nt_elastic_most(plan, term, gap));
     return radius_at(plan, u * sqrt(nt_elastic_bluntest(plan)) - gap);
 }
 
@@ -191,6 +191,7 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
     const double nearest = scene->range.minimum_gap;
     const double outside = nt_elastic_hold(plan) * (1.0 + 1e-12);
     double worst = 0.0, reached = 0.0;
+    nt_elastic_sum most = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
     plan->elastic_number = 0.0;
     const double last = fmax(fmax(nearest, outside), NEAREST);
     const double load = DEEPER * scene->range.maximum_load;
@@ -202,7 +203,9 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
             reached = next = where_force_is(plan, load, next, gap);
             touches = -1;
         }
-        const nt_elastic_sum s = nt_elastic_sum_at(plan, next);
+        nt_elastic_sum s = nt_elastic_sum_at(plan, next);
+        s.all_F = most.all_F = fmax(s.all_F, most.all_F); /* what cancels here presses farther out */
+        s.all_k = most.all_k = fmax(s.all_k, most.all_k);
         worst = fmax(worst, nt_elastic_error(plan, &s));
         plan->elastic_number = fmax(plan->elastic_number, number_of(plan, &s));
         gap = next;

@@ -84,7 +84,8 @@ static double error_of_neck(const nt_plan *plan)
 {
     enum { SAMPLES = 48 };
     const nt_elastic_sum held = others_at_hold(plan);
-    const double beside = shift_of(plan, 0) + nt_plan_away_from_folds(plan), fold = beside - plan->release_gap;
+    const double beside = NT_ELASTIC_BESIDE * shift_of(plan, 0) + nt_plan_away_from_folds(plan);
+    const double fold = beside - plan->release_gap;
     double worst = 0.0;
     if (held.all_F == 0.0 || nt_plan_contact_form(plan) != NT_FORM_EXACT)
         return 0.0;

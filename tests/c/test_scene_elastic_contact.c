@@ -117,10 +117,29 @@ static void folds_agree_that_are_not_visited(void **state)
     }
 }
 
+/* A potential around a dry contact whose tail jumps: contact and laws are solved together, which the sum, rough as it
+ * is, and finer demands agree with. All but the first were refused. */
+static void a_dry_contact_is_solved_with_what_is_around_it(void **state)
+{
+    (void)state;
+    const double demands[][2] = {{0.1, 1e-2}, {1e-2, 1e-3}, {1e-3, 0.0}};
+    nt_scene scenes[] = {dry(2e-8, 5e9, 0.1, 8e-20), dry(3e-8, 6e9, 0.1, 1e-19)};
+    for (int i = 0; i < 2; ++i) {
+        scenes[i].adhesion.contact_potential = i == 0 ? 0.3 : 0.5;
+        for (int j = 0; j < 3; ++j) {
+            make(&plans[0], &scenes[i], NT_QUANTITY_FORCE, demands[j][0]);
+            assert_true(plans[0].deformation.holds && plans[0].bound.force_error <= demands[j][0]);
+            if (j < 2)
+                assert_true(contradiction(&scenes[i], NT_QUANTITY_FORCE, demands[j]) <= 1.0);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(forces_agree_beside_the_fold),
                                        cmocka_unit_test(radii_agree_where_contact_ends),
-                                       cmocka_unit_test(folds_agree_that_are_not_visited)};
+                                       cmocka_unit_test(folds_agree_that_are_not_visited),
+                                       cmocka_unit_test(a_dry_contact_is_solved_with_what_is_around_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

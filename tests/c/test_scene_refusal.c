@@ -194,37 +194,66 @@ static void any_bound_will_do(void **state)
     assert_true(plan.bound.force_error <= 0.01);
 }
 
-/* Unlike double layers: the surface would jump 30 pm inside the gap where the bodies touch. The forces are those of
- * nanotouch.reference.deformed, which shares no code with plans, to its last digit here. */
+/* Double layers of unlike surfaces, without adhesion. */
+static nt_scene unlike(double radius, double modulus, double poisson_ratio, double salt, const double potentials[2])
+{
+    nt_scene scene = nt_scene_defaults();
+    scene.tip.radius = radius;
+    scene.tip.surface_potential = potentials[0];
+    scene.sample.surface_potential = potentials[1];
+    scene.sample.youngs_modulus = modulus;
+    scene.sample.poisson_ratio = poisson_ratio;
+    scene.medium.kind = NT_MEDIUM_LIQUID;
+    scene.medium.ionic_strength = salt;
+    scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = 0.0;
+    return scene;
+}
+
+/* Whether it is planned, with forces {gap, F} within the bound and what the digits of the truth leave. */
+static void assert_within(const nt_scene *scene, double demand, const double (*truth)[2], int count)
+{
+    nt_problem problem = {0};
+    const nt_interaction_state apart = {0};
+    assert_int_equal(ask_force(scene, demand, &problem), NT_OK);
+    assert_true(plan.bound.force_error <= demand);
+    for (int i = 0; i < count; ++i) {
+        const double F = nt_interaction_eval_gap(&plan, &apart, NULL, truth[i][0]).F;
+        const double size = fabs(truth[i][1]) > plan.scale ? fabs(truth[i][1]) : plan.scale;
+        assert_true(fabs(F - truth[i][1]) <= (plan.bound.force_error + 3e-5) * size);
+    }
+}
+
+/* The surface would jump 30 pm inside the gap where the bodies touch. The forces, as those of the next test, are of
+ * nanotouch.reference.deformed, which shares no code with plans. */
 static void a_surface_that_touches_before_it_jumps_is_planned(void **state)
 {
     (void)state;
     static const double truth[][2] = {{1e-9, -1.5049e-8}, {4e-10, -5.2585e-8},      {1.2e-10, -8.4573e-8},
                                       {0.0, -8.1375e-8},  {-2.5090e-10, 4.1632e-8}, {-8.3633e-10, 6.0087e-7}};
     const double demands[] = {0.1, 0.03, 0.01, 0.003, 0.001};
-    nt_scene scene = nt_scene_defaults();
-    scene.tip.radius = 7.75747758466504e-06;
+    nt_scene scene = unlike(7.75747758466504e-06, 7423713634.411866, 0.2111910147487924, 2.3337125885373227,
+                            (double[]){-0.013598718397653767, -0.049181819148044474});
     scene.tip.youngs_modulus = 130e9;
     scene.tip.poisson_ratio = 0.28;
-    scene.tip.surface_potential = -0.013598718397653767;
-    scene.sample.youngs_modulus = 7423713634.411866;
-    scene.sample.poisson_ratio = 0.2111910147487924;
-    scene.sample.surface_potential = -0.049181819148044474;
-    scene.medium.kind = NT_MEDIUM_LIQUID;
-    scene.medium.ionic_strength = 2.3337125885373227;
-    scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = 0.0;
     scene.range.maximum_load = 7.146714203136005e-07;
-    for (int i = 0; i < 5; ++i) {
-        nt_problem problem = {0};
-        const nt_interaction_state apart = {0};
-        assert_int_equal(ask_force(&scene, demands[i], &problem), NT_OK);
-        assert_true(plan.bound.force_error <= demands[i]);
-        for (int j = 0; j < 6; ++j) {
-            const double F = nt_interaction_eval_gap(&plan, &apart, NULL, truth[j][0]).F;
-            const double size = fabs(truth[j][1]) > plan.scale ? fabs(truth[j][1]) : plan.scale;
-            assert_true(fabs(F - truth[j][1]) <= (plan.bound.force_error + 3e-5) * size);
-        }
-    }
+    for (int i = 0; i < 5; ++i)
+        assert_within(&scene, demands[i], truth, 6);
+}
+
+/* The pressure is larger around the contact than at its edge, where repulsion and attraction cancel: the sum on the
+ * undeformed gap was off by 1.16 times its bound. */
+static void a_pressure_that_cancels_at_contact_counts_around_it(void **state)
+{
+    (void)state;
+    static const double truth[][2] = {{1e-9, 4.35960e-11},    {2.4e-10, 5.66637e-11},  {0.0, 5.71178e-11},
+                                      {-7e-13, 5.80816e-11},  {-3.4e-12, 7.26906e-11}, {-1e-11, 1.40516e-10},
+                                      {-3.4e-11, 5.91020e-10}};
+    nt_scene scene = unlike(11.36e-9, 2.2e10, 0.392, 36.0, (double[]){-0.0431, -0.0471});
+    scene.tip.youngs_modulus = 7e10;
+    scene.tip.poisson_ratio = 0.17;
+    scene.range.maximum_load = 6.95e-10;
+    for (double demand = 0.1; demand > 1e-3; demand *= 0.3)
+        assert_within(&scene, demand, truth, 7);
 }
 
 int main(void)
@@ -237,6 +266,7 @@ int main(void)
         cmocka_unit_test(an_error_of_zero_is_refused_as_any_other),
         cmocka_unit_test(any_bound_will_do),
         cmocka_unit_test(a_surface_that_touches_before_it_jumps_is_planned),
+        cmocka_unit_test(a_pressure_that_cancels_at_contact_counts_around_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

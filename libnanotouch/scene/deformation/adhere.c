@@ -13,9 +13,9 @@
 #include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
 
-#define INSIDE 0.01   /* of what a cycle can lose: at least so much is lost at either jump */
-#define FELT 0.2      /* of the demand: what laws around a contact err by on the undeformed gap */
-#define SOFT 2.0      /* elastic number: a dry contact that is stiffer can seldom be solved with what is around it */
+#define INSIDE 0.01 /* of what a cycle can lose: at least so much is lost at either jump */
+#define FELT 0.2    /* of the demand: what laws around a contact err by on the undeformed gap */
+#define SOFT 0.6    /* elastic number: a dry contact that is stiffer has a tail that goes on into it, without a jump */
 #define STRONGEST 0.9 /* of w: what a tail may pull of it */
 
 static double energy_of_contact(const nt_plan *plan, double gap)

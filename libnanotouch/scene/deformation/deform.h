@@ -289,6 +289,9 @@ nt_elastic_sum nt_elastic_sum_at(const nt_plan *plan, double gap);
 /* Sizes of F and k of one of them. The pressure of a law of one's own need not fall with the gap, and is felt nearer,
  * too: so they are the largest from there on. */
 nt_law_value nt_elastic_sizes(const nt_plan *plan, int term, double gap);
+/* The largest sizes from a gap on: a law whose parts cancel there, as a double layer of unlike surfaces, presses more
+ * farther out. */
+nt_law_value nt_elastic_most(const nt_plan *plan, int term, double gap);
 /* The next gap inwards that is to be looked at: a tenth nearer, or less where a law of one's own may change before [m].
  */
 double nt_elastic_nearer(const nt_plan *plan, double gap);

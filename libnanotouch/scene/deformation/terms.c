@@ -6,11 +6,12 @@
 #include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
 
-#define STEP 1e-4  /* of a gap: differences */
-#define FADED 1e-6 /* of what a law is at half the gap: it ends without a kink */
-#define GAPS 1.1   /* ratio of gaps that are looked at */
-#define PARTS 4.0  /* of a piece of a law of one's own */
-#define PIECES 4   /* of such a law, which one step of a table may pass: its narrowest part has more */
+#define STEP 1e-4     /* of a gap: differences */
+#define FADED 1e-6    /* of what a law is at half the gap: it ends without a kink */
+#define GAPS 1.1      /* ratio of gaps that are looked at */
+#define NEAREST 1e-12 /* of them, where laws are not held [m] */
+#define PARTS 4.0     /* of a piece of a law of one's own */
+#define PIECES 4      /* of such a law, which one step of a table may pass: its narrowest part has more */
 
 /* The piece of a law of one's own that a gap lies in, of which it is the end or within: its ends [m]. */
 static int piece_of(const nt_plan *plan, int term, double gap, double ends[2])
@@ -49,6 +50,23 @@ nt_law_value nt_elastic_sizes(const nt_plan *plan, int term, double gap)
     if (piece_of(plan, term, gap, ends)) {
         most.F = fmax(most.F, nt_plan_law_limit(plan, term, ends[1], NT_QUANTITY_FORCE));
         most.k = fmax(most.k, nt_plan_law_limit(plan, term, ends[1], NT_QUANTITY_STIFFNESS));
+    }
+    return most;
+}
+
+/* Up to where no part of it is larger. */
+nt_law_value nt_elastic_most(const nt_plan *plan, int term, double gap)
+{
+    const nt_form form = nt_plan_full_form(plan, term);
+    nt_law_value most = nt_elastic_sizes(plan, term, gap);
+    for (double g = fmax(gap, NEAREST); g < NT_DEFORM_FARTHEST; g *= GAPS) {
+        const double all_F = nt_plan_law_limit(plan, term, g, NT_QUANTITY_FORCE);
+        const double all_k = nt_plan_law_limit(plan, term, g, NT_QUANTITY_STIFFNESS);
+        if (nt_term_rows[term]->edges || !(all_F > most.F || all_k > most.k))
+            break;
+        const nt_law_value there = nt_plan_law_eval(plan, term, form, g * GAPS);
+        most.F = fmax(most.F, fabs(there.F));
+        most.k = fmax(most.k, fabs(there.k));
     }
     return most;
 }
