@@ -363,3 +363,36 @@ def test_what_is_no_http_is_answered_and_prints_nothing(
     visit(desk, call)
     assert not [record for record in caplog.records if record.name.startswith(("nanotouch", "aiohttp", "asyncio"))]
     assert "Traceback" not in capfd.readouterr().err
+
+
+def test_a_file_is_opened_by_the_page_that_operates_alone(desk: BrowserDesk, tmp_path: Path) -> None:
+    """As `live FILE` opens it; nothing else can be sent, and no name leads out of the folder."""
+    image = tmp_path / "relief.gsf"
+    heights = 1e-9 * np.random.default_rng(1).standard_normal((32, 32))
+    nt.images.write(image, nt.Topography(heights, (1e-8, 1e-8), name="relief"))
+
+    async def call(client: Any, address: str, desk: BrowserDesk) -> None:
+        socket = await opened(client, address, desk.server.keys.operate, desk.server.keys.token)
+        token = (await heard(socket, "granted"))["token"]
+
+        async def send(name: str, data: bytes, **changed: str) -> tuple[int, str]:
+            headers = {"Origin": address, "X-Nanotouch-Token": token, "X-Nanotouch-File": name, **changed}
+            async with client.post(f"{address}/open", data=data, headers=headers) as answer:
+                return answer.status, await answer.text()
+
+        for wrong in ({"X-Nanotouch-Token": ""}, {"X-Nanotouch-Token": "guessed"}, {"Origin": "http://other.example"}):
+            assert (await send("a.gsf", b"", **wrong))[0] == 403
+        for name in ("rig.toml", "..", "", "map.NC", "touch.mcap"):
+            status, why = await send(name, b"")
+            assert (status, "command line" in why) == (400, True), name
+        assert (await send("..%2F..%2Fno%20image.gsf", b"nothing"))[0] == 204
+        assert "no image.gsf" in (await heard(socket, "refused"))["why"]
+        assert (await send("relief.gsf", image.read_bytes()))[0] == 204
+        while "relief" not in (world := await heard(socket, "world"))["title"] + world["felt"]:
+            pass
+        assert sorted(file.name for file in desk.server.folder.path.rglob("*.gsf")) == ["no image.gsf", "relief.gsf"]
+        await socket.send_json({"do": "preset", "name": "silicon_in_air"})
+        while (await heard(socket, "world"))["preset"] != "silicon_in_air":
+            pass
+
+    visit(desk, call)

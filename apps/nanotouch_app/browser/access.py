@@ -5,11 +5,13 @@ operates, once; one that watches. Host and origin of each request are checked, a
 from __future__ import annotations
 
 import hmac
+import re
 import secrets
 import sys
 from collections.abc import Callable
+from pathlib import PurePosixPath
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
 from nanotouch.errors import InvalidValue
 from nanotouch.touch import host
@@ -21,6 +23,7 @@ LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 MOST_STEPS = 100.0  # of the wheel at once
 LONGEST = 200  # letters of a text that is asked
 KEY_BYTES = 24
+NAMES_FILES = (".toml", ".nc", ".mcap")  # may name other files, or are played
 Message = dict[str, Any]
 
 
@@ -48,6 +51,21 @@ class Keys:
             raise Refused("this link operates once, and has been used: ask for the one that watches")
         self.token = secrets.token_urlsafe(KEY_BYTES)
         return True, self.token
+
+    def operates(self, token: object) -> bool:
+        """Whether this is the token of the page that operates."""
+        return bool(self.token) and _same(token, self.token)
+
+
+def file_name(said: str | None) -> str:
+    """A name for a file that a page sends, whatever it says; :class:`~nanotouch.errors.InvalidValue` for what is named
+    on the command line instead."""
+    name = re.sub(r"[^\w.() -]", "_", PurePosixPath(unquote(said or "")).name)[-LONGEST // 2 :].lstrip(".")
+    if not name or PurePosixPath(name).suffix.lower() in NAMES_FILES:
+        raise InvalidValue(
+            f"{name or 'a file without a name'}: images and force curves may be dropped; name it on the command line"
+        )
+    return name
 
 
 def _same(given: object, wanted: str) -> bool:

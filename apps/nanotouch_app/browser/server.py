@@ -4,16 +4,19 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import json
 import queue
+import shutil
 import threading
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 from nanotouch.errors import Error
 from nanotouch.errors import missing as missing_extra
+from nanotouch.touch.scratch import Scratch
 
-from nanotouch_app.browser.access import LOOPBACK, Keys, Refused, checked, host_is_ours, origin_is_ours
+from nanotouch_app.browser.access import LOOPBACK, Keys, Refused, checked, file_name, host_is_ours, origin_is_ours
 from nanotouch_app.browser.readers import Reader, Readers
 from nanotouch_app.browser.update import message_text, stored_surface
 
@@ -27,6 +30,7 @@ except ImportError as missing:
 TURN = 1.0 / 60.0  # between two looks at the frames [s]
 GREETING = 10.0  # within which a socket must say its key [s]
 LARGEST = 4096  # message of a page [byte]
+LARGEST_FILE = 64_000_000  # that a page sends [byte]
 WATCHERS = 100  # at once; the page that operates always finds a place
 START = 10.0  # [s]
 WRONG_KEY, NO_ROOM = 4403, 4429  # why a socket is closed
@@ -44,6 +48,7 @@ class Server:
         self.asked: queue.Queue[Message] = queue.Queue()
         self.loop = asyncio.new_event_loop()
         self.operator: Reader | None = None
+        self.folder, self.files = Scratch(), itertools.count(1)  # what the page that operates has sent
         self._ready = threading.Event()
         self._error: OSError | None = None
         self._sent: set[asyncio.Task[Any]] = set()
@@ -72,9 +77,10 @@ class Server:
         self.loop.close()
 
     async def _open(self) -> web.AppRunner:
-        app = web.Application(middlewares=[self._guarded])
+        app = web.Application(middlewares=[self._guarded], client_max_size=LARGEST_FILE)
         app.router.add_get("/", self._page)
         app.router.add_get("/session", self._socket)
+        app.router.add_post("/open", self._open_file)
         runner = web.AppRunner(
             app, access_log=None, shutdown_timeout=1.0, keepalive_timeout=GREETING, logger=quiet_log()
         )
@@ -109,6 +115,24 @@ class Server:
 
     async def _page(self, request: web.Request) -> web.Response:
         return web.Response(body=self.page, content_type="text/html", charset="utf-8", headers=HEADERS)
+
+    async def _open_file(self, request: web.Request) -> web.Response:
+        """A file that was dropped on the page that operates: the host reads it as one that is named."""
+        said = request.headers
+        is_ours = origin_is_ours(said.get("Origin"), said.get("Host"))
+        if not (is_ours and self.keys.operates(said.get("X-Nanotouch-Token"))):
+            raise web.HTTPForbidden(text="files are opened by the page that operates")
+        try:
+            name = file_name(said.get("X-Nanotouch-File"))
+        except Error as error:
+            raise web.HTTPBadRequest(text=str(error)) from None
+        data, number = await request.read(), next(self.files)
+        folder = self.folder.path / str(number)
+        folder.mkdir()
+        await asyncio.to_thread((folder / name).write_bytes, data)
+        shutil.rmtree(self.folder.path / str(number - 2), ignore_errors=True)  # the one before may still be read
+        self.asked.put({"do": "open", "path": str(folder / name)})
+        return web.Response(status=204)
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         if not origin_is_ours(request.headers.get("Origin"), request.headers.get("Host")):
@@ -200,6 +224,7 @@ class Server:
         """End it."""
         self._call(self.loop.stop)
         self.thread.join(5.0)
+        self.folder.close()
 
 
 async def _quietly(send: Callable[[bytes | str], Awaitable[None] | None], data: bytes | str) -> None:

@@ -42,7 +42,7 @@ export class Contact {
     const r = Array.from({ length: POINTS }, (_, i) => (i / (POINTS - 1)) ** 1.5 * MORE * this.halfWidth);
     const { gap, force } = seen.now, made = await this.ask({ draw: "section", gap, force, r });
     this.asked = false;
-    if (!made.error) this.section = { ...(seen.world?.scene.rheology.kind === "elastic" ? made : relaxed(made, seen)), gap, force };
+    if (!made.error && seen.now) this.section = { ...(seen.world?.scene.rheology.kind === "elastic" ? made : relaxed(made, seen)), gap, force };
   }
 
   // The zone of action fills its part of the frame; the gap is seen, too. Zoom by smooth factors of 2.

@@ -9,6 +9,7 @@ import { byId, element } from "./words.js";
 import { digits, parseQuantity } from "./units.js";
 
 const LARGEST = 64e6; // [byte]
+const MORE = "This page fits Hertz alone. nanotouch live FILE --browser fits all laws, those of samples that relax, too, and draws what was measured.";
 const USUAL_RADIUS = "20 nm";
 
 export class Drop {
@@ -30,8 +31,12 @@ export class Drop {
 
   async open(file) {
     try {
-      if (!this.state.own) throw new Error("files are opened where the session runs: name them on its command line");
+      if (!this.state.own && !this.link.open) throw new Error("files are opened where the session runs: name them there");
       if (file.size > LARGEST) throw new Error(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB; valid are ${LARGEST / 1e6} MB`);
+      if (!this.state.own) {
+        this.words.close();
+        return await this.link.open(file);
+      }
       if (/\.mcap$/i.test(file.name)) throw new Error(`a recording is played in a window: nanotouch live ${file.name}`);
       if (/\.toml$/i.test(file.name)) this.scene(await file.text(), file.name);
       else if (/\.(png|jpe?g|gsf)$/i.test(file.name)) await this.#image(file);
@@ -39,6 +44,7 @@ export class Drop {
     } catch (error) {
       this.state.note(`${file.name}: ${error.message}`);
     }
+    return undefined;
   }
 
   #lay(title, { scene, rig, map, hint }) {
@@ -92,7 +98,7 @@ export class Drop {
       "baseline slope": "N/m", "visible from": "N", ruptures: "" };
     const rows = made.found.filter(([name]) => name in unit).map(([name, value]) => [name, name === "ruptures" ? `${value}` : digits(value, unit[name])]);
     rows.push([`effective modulus (Hertz, R = ${USUAL_RADIUS})`, digits(made.modulus, "Pa")]);
-    this.words.form(`${file.name}: what the curve shows`, [this.words.facts(rows)], [["radius", "radius of the tip", USUAL_RADIUS],
+    this.words.form(`${file.name}: what the curve shows`, [this.words.facts(rows), element("p", { className: "quiet", textContent: MORE })], [["radius", "radius of the tip", USUAL_RADIUS],
       ["spring", "stiffness of the lever", Number.isFinite(made.springConstant) ? `${made.springConstant} N/m` : ""]], again);
   }
 

@@ -68,6 +68,13 @@ export class Socketed {
     this.socket.onclose = ({ reason }) => hear({ tell: "refused", why: reason || "the session has ended, or the connection is lost" });
   }
 
+  // A file, to be read where the session is.
+  async open(file) {
+    const headers = { "X-Nanotouch-Token": sessionStorage.getItem("nanotouch-token") ?? "", "X-Nanotouch-File": encodeURIComponent(file.name) };
+    const answer = await fetch("/open", { method: "POST", body: file, headers });
+    if (!answer.ok) throw new Error(await answer.text());
+  }
+
   ask(message) { if (this.socket.readyState === 1) this.socket.send(JSON.stringify(message)); }
 }
 

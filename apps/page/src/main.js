@@ -50,7 +50,9 @@ const overlay = new Overlay(painter("overlay"), lens, table.constants);
 const contact = new ContactPanel(painter("contact"), drawnBy);
 const law = new ForceGap(painter("law")), chart = new History(painter("history"), table.constants);
 const words = new Words(table, ask), sliders = new Sliders(byId("sliders"), table, ask);
-const drop = new Drop(table, words, { ask, draw: (message) => worked.draw(message) }, state);
+const drop = new Drop(table, words, { ask, draw: (message) => worked.draw(message),
+  open: link.open && ((file) => link.open(file)) }, state);
+if (link.open) byId("file").removeAttribute("accept"); // all formats are read where the session is
 const hands = new Hands((message) => { by("pad"); ask(message); }, (text) => seen.note(text, false));
 const device = matchMedia("(pointer: coarse)").matches ? "finger" : "wheel";
 
