@@ -94,6 +94,8 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@NANOTOUCH_ALL_BRIDGES=1 $(VENV)/python -m pytest -q tests/python/test_bridges.py
 	@NANOTOUCH_ALL_DRAWS=1 build/dev/tests/c/test_session_faults_three
 	@NANOTOUCH_ALL_DRAWS=1 build/dev/tests/c/test_session_adversary
+	@NANOTOUCH_ALL_DRAWS=1 build/dev/tests/c/test_scene_facts
+	@NANOTOUCH_LOOP_CASES=24 build/dev/tests/c/test_scan_answer
 	@NANOTOUCH_ALL_DRAWS=1 $(VENV)/python -m pytest -q -n $(JOBS) $(shell grep -l '^import draws' tests/python/test_*.py)
 	@$(VENV)/python tests/heavy/lines.py
 	@$(VENV)/python tests/heavy/extremes.py

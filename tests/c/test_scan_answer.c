@@ -15,7 +15,7 @@
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/advanced/scan.h"
 
-enum { CASES = 6, TICKS = 2048, WINDOW = 512, TOO_HIGH = 8 };
+enum { CASES = 3, TICKS = 2048, WINDOW = 512, TOO_HIGH = 8 };
 #define SMALL 50e-12 /* step of the base [m] */
 static nt_plan plan;
 static nt_rig rig;

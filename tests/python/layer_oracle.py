@@ -27,17 +27,18 @@ _GAUSS = np.polynomial.legendre.leggauss(60)
 THREE_SIDED = 0.8796  # F/(E* tan(psi) delta^2), tests/c/test_contact_pyramid.c
 
 
-def _kernel(u: Any) -> Any:
-    return np.cos(np.multiply.outer(u, _S)) @ ((1.0 - _K) * _WEIGHT)
+def _kernel(x: Any, t: Any) -> Any:
+    """L(x - t) + L(x + t), of cos((x - t) s) + cos((x + t) s) = 2 cos(x s) cos(t s)."""
+    return 2.0 * (np.cos(np.multiply.outer(x, _S)) * ((1.0 - _K) * _WEIGHT)) @ np.cos(np.multiply.outer(_S, t))
 
 
 def solved(shape: str, a: float) -> tuple[float, float]:
     """Indentation and force at a contact radius, of a paraboloid of R = 1 or a cone of tan(psi) = 1."""
     t, weight = 0.5 * a * (_GAUSS[0] + 1.0), 0.5 * a * _GAUSS[1]
-    matrix = np.eye(t.size) - (_kernel(t[:, None] - t) + _kernel(t[:, None] + t)) * weight / math.pi
+    matrix = np.eye(t.size) - _kernel(t, t) * weight / math.pi
     profile, edge = (t**2, a**2) if shape == "layer" else (math.pi / 2 * t, math.pi / 2 * a)
     one, bent = np.linalg.solve(matrix, np.stack([np.ones(t.size), profile], axis=1)).T
-    row = (_kernel(a - t) + _kernel(a + t)) * weight / math.pi
+    row = _kernel(a, t) * weight / math.pi
     depth = (edge + row @ bent) / (1.0 + row @ one)
     return float(depth), float(2.0 * weight @ (depth * one - bent))
 

@@ -28,11 +28,10 @@ for module in ("mcap", "tqdm", "matplotlib", "gwyfile", "h5py", "vtkmodules"):
 README = Path(__file__).parents[2] / "README.md"
 LONG = (
     "nanotouch live silicon_in_air --film touch.gif",
-    "nanotouch tradeoff --quick",
     "nanotouch bench --quick",
     "nanotouch reproduce --figure 5",
 )
-ELSEWHERE = ("nanotouch workflow --pixels 48",)  # test_workflow.py
+ELSEWHERE = ("nanotouch workflow --pixels 48", "nanotouch tradeoff --quick")  # test_workflow.py, test_tradeoff.py
 NEEDS = {"map": "xarray", "live": "PIL", "scan": "gwyfile"}
 WINDOW = ("nanotouch live",)  # needs a display and a hand
 
