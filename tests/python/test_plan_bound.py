@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import nanotouch as nt
 import numpy as np
@@ -94,3 +94,41 @@ def test_a_viewer_plans_the_world_that_it_sees() -> None:
         again = scene.plan(demand_of({"relative_accuracy": 0.01, "bound": plan.bound}))
         assert math.isfinite(again.bound) == known
         np.testing.assert_allclose(again.force([1e-9]), plan.force([1e-9]))
+
+
+@pytest.mark.parametrize(
+    ("radius", "modulus", "work", "energy", "length"),
+    [
+        (20e-9, 1.3e11, 0.02, 0.005, 5e-10),
+        (20e-9, 1.3e11, 0.02, 0.005, 5e-9),
+        (1e-6, 1e11, 0.05, 0.01, 3e-10),
+        (5e-9, 5e10, 0.05, 0.01, 1e-9),
+    ],
+)
+def test_a_law_around_a_hard_contact_loses_less_than_the_bound(
+    radius: float, modulus: float, work: float, energy: float, length: float
+) -> None:
+    """Hydration, to first order: its pressure on the gap beside Hertz' contact moves the tip by 1 - 2/pi asin(a/r) of
+    what it moves the surface (Sneddon's flat punch, by reciprocity); adhesion acts between a and the gap h0."""
+    tables: dict[str, Any] = {
+        "tip": {"radius": radius, "youngs_modulus": 1e13},
+        "sample": {"youngs_modulus": modulus, "poisson_ratio": 0.3},
+        "adhesion": {"work_of_adhesion": work, "hamaker_constant": 0.0},
+        "range": {"maximum_load": 30.0 * work * radius},
+    }
+    water: Any = {"kind": "liquid", "hydration_energy": energy, "hydration_length": length}
+    plan = Scene(**tables, medium=water).plan(bound="exact")
+    alone = Scene(**tables, medium={"kind": "liquid"}).plan(bound="exact")
+    z0 = Scene(**tables).adhesion.equilibrium_distance
+    h0 = 9.0 * math.sqrt(3.0) / 16.0 * z0
+    assert plan.explain()["lambda"] < 0.4  # hard: the gap beside it is Hertz'
+    for depth in plan.explain()["largest_indentation"] * np.array([0.05, 0.2, 0.5, 0.95]):
+        a = math.sqrt(radius * depth)
+        r = a + np.geomspace(1e-6, 1.0, 4000) * (a + math.sqrt(60.0 * radius * length))
+        x = r / a
+        gap = a**2 / (math.pi * radius) * (np.sqrt(x**2 - 1.0) + (x**2 - 2.0) * np.arccos(1.0 / x))
+        pressure = np.where(gap > h0, energy / length * np.exp(-(z0 + gap - h0) / length), 0.0)
+        felt = pressure * (1.0 - 2.0 / math.pi * np.arcsin(a / r)) * 2.0 * math.pi * r
+        force = alone.force(-depth) + float(np.sum(0.5 * (felt[1:] + felt[:-1]) * np.diff(r)))
+        error = abs(plan.force(-depth) - force) / max(abs(force), plan.scale)
+        assert 0.05 * plan.bound < error < plan.bound
