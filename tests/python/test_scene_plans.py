@@ -55,3 +55,8 @@ def test_choices_are_named() -> None:
 def test_what_is_no_study_is_refused(over: Any, words: str) -> None:
     with pytest.raises(InvalidValue, match=words):
         nt.Scene().plans(over)
+
+
+def test_a_demand_that_is_none_is_refused_by_name() -> None:
+    with pytest.raises(InvalidValue, match=r"demand: expected a nanotouch\.Demand, not 0\.01"):
+        nt.Scene().plans({"tip.radius": [1e-8]}, 0.01)  # type: ignore[arg-type]

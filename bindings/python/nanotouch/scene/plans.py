@@ -31,6 +31,9 @@ RESULTS = {  # of a plan: unit, name
 def plans_over(scene: Scene, over: Mapping[str, Sequence[Any]], demand: Demand | None, rig: Rig | None) -> Any:
     """The dataset of :meth:`nanotouch.Scene.plans`."""
     xarray = require("xarray", "notebook")
+    if demand is not None and not hasattr(demand, "core"):
+        wanted = f"nanotouch.Demand(demand={{'relative_accuracy': {demand!r}}})"
+        raise InvalidValue(f"demand: expected a nanotouch.Demand, not {demand!r}: for an accuracy {wanted}")
     for name, values in over.items():
         if name not in scene.fields:
             raise InvalidValue(f"over: {name!r} is no field of a scene; fields are named as in scene['tip.radius']")
