@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Laws over arrays of 4096, each in a function of its own, for bench_element.py to count the instructions of. */
+ * Laws over arrays of 4096, and as many steps of a session, each in a function of its own, for bench_element.py to
+ * count the instructions of. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -8,6 +9,7 @@
 #include "nanotouch/contact.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
+#include "nanotouch/session.h"
 
 enum { COUNT = 4096, CELLS = 400, CALLS = 4096 };
 
@@ -22,6 +24,7 @@ static nt_contact contacts[COUNT]; /* one for every element */
 static nt_contact_law hertz, jkr, maugis;
 static nt_maugis_cell cells[CELLS];
 static nt_maugis_table table;
+static nt_session *session;
 
 static void over(const nt_contact_law *law, int all)
 {
@@ -90,13 +93,31 @@ COUNTED element_folds(void)
     }
 }
 
+/* As session.step(Input) in Python: an input in every period, and its frame. */
+COUNTED element_session_step(void)
+{
+    const nt_input input = {.operator_force[NT_Z] = 0.5};
+    nt_frame frame = {0};
+    for (int i = 0; i < CALLS; i++)
+        (void)nt_session_step(session, &input, &frame);
+    out[0][0] = frame.gap;
+}
+
+static nt_status open_session(void)
+{
+    nt_session_setup setup = nt_session_defaults();
+    setup.preflight = 0;
+    setup.ring_capacity = 0;
+    return nt_session_open(&session, &setup, NULL);
+}
+
 int main(void)
 {
     const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.5};
     if (nt_contact_law_init(&hertz, NT_HERTZ, &contact) != NT_OK ||
         nt_contact_law_init(&jkr, NT_JKR, &contact) != NT_OK ||
         nt_contact_law_init(&maugis, NT_MAUGIS, &contact) != NT_OK ||
-        nt_maugis_table_init(&table, &maugis.maugis, NULL, cells, CELLS) != NT_OK)
+        nt_maugis_table_init(&table, &maugis.maugis, NULL, cells, CELLS) != NT_OK || open_session() != NT_OK)
         return 1;
     unsigned random = 1;
     for (int i = 0; i < COUNT; i++) {
@@ -104,11 +125,12 @@ int main(void)
         in[i] = -0.9 + 10.0 * (double)(random >> 8) / 16777216.0;
         contacts[i] = (nt_contact){1.0, 0.75, 1.0 / NT_PI, 0.01 + 0.01 * (double)(i * 37 % COUNT)};
     }
-    void (*const all[])(void) = {element_hertz,      element_jkr,          element_exact,    element_exact_values, //
-                                 element_table,      element_table_values, element_polished, element_scalar_exact,
-                                 element_each_exact, element_folds};
+    void (*const all[])(void) = {element_hertz,      element_jkr,          element_exact,       element_exact_values, //
+                                 element_table,      element_table_values, element_polished,    element_scalar_exact,
+                                 element_each_exact, element_folds,        element_session_step};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         all[i]();
+    nt_session_close(session);
     printf("%g\n", out[0][COUNT / 2]);
     return 0;
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Instructions of one element of an array of a law, counted by valgrind: no clock of a shared machine says them.
+"""Instructions of one element of an array of a law, and of a step, counted by valgrind: no clock of a shared machine
+says them.
 
 valgrind knows no AVX-512: these are the counts of AVX2.
 

@@ -20,7 +20,9 @@ HEAD = """# Speed
 
 What one element of an array costs: in nanoseconds, and in multiples of Hertz' force written inline (AVX2,
 {hertz:.2g} ns). *Counted* are instructions with AVX2. Unlike times they are the same on every run: a test fails where
-one grows by 3 % (`tests/bench/instructions.json`, `test_cycle.py`). The times are of one machine: {machine}; λ = 5.8.
+one grows by 3 % (`tests/bench/instructions.json`, `test_cycle.py`). So are those of a step of a session in C, and,
+of a scalar call and `session.step` from Python, the bytecode instructions and the calls into C
+(`test_cycle_python.py`). The times are of one machine: {machine}; λ = 5.8.
 
 `make bench` measures, `python tests/bench/speed.py build/release/tests/bench` writes this page.
 
