@@ -15,11 +15,11 @@ from .. import contact as laws
 from .._arrays import as_floats, check_between
 from ..errors import InvalidValue
 from .curve import ForceCurve, Segment
+from .synthesis import POSITIVE
 
 Floats = NDArray[np.float64]
 _CHUNK = 64  # curves that share a stream of noise; part of what a seed means
-_POSITIVE = {"radius": "m", "effective_modulus": "Pa", "spring_constant": "N/m", "cohesive_range": "m",
-             "sensitivity_error": "", "spring_constant_error": ""}  # fmt: skip
+_POSITIVE = POSITIVE | {"radius": "m", "effective_modulus": "Pa", "cohesive_range": "m"}
 _NOT_NEGATIVE = {"work_of_adhesion": "J/m^2", "noise": "N"}
 _ANY = {"contact_point": "m", "offset": "N", "tilt": "N/m", "drift": "m/s"}
 
@@ -107,24 +107,10 @@ def synthesize_batch(
         The contact law.
     radius, effective_modulus, work_of_adhesion, cohesive_range : array_like
         R [m], E* [Pa], w [J/m^2], h0 = w/sigma0 [m]; the last is read by ``"maugis"`` alone.
-    spring_constant : array_like
-        True k_c [N/m].
-    depth, clearance : float
-        How far the base goes below and above z = 0 [m].
-    contact_point : array_like
-        z of the base where the undeformed bodies touch [m], at the deepest point of the curve if there is drift.
-    points : int
-        Of each branch, at least 16.
-    rate : float
-        Points per second [1/s].
-    noise : array_like
-        Standard deviation of the force, white [N].
-    offset, tilt : array_like
-        Of the detector: force at the contact point [N] and its change with z of the base [N/m].
-    drift : array_like
-        Speed with which the sample recedes from the recorded z [m/s].
-    sensitivity_error, spring_constant_error : array_like
-        Stated over true calibration; both scale the recorded force.
+    spring_constant, contact_point, noise, offset, tilt, drift, sensitivity_error, spring_constant_error : array_like
+        As of :func:`synthesize`.
+    depth, clearance, points, rate
+        As of :func:`synthesize`, of all curves; depth and clearance count from z = 0.
     seed : int
         Of the noise. The same arguments give the same curves, whatever the number of workers.
     workers : int
@@ -141,8 +127,8 @@ def synthesize_batch(
         )
     if model not in laws.MODELS:
         raise InvalidValue(f"model {model!r}: valid are {', '.join(laws.MODELS)}")
-    for name, value, unit in (("depth", depth, "m"), ("clearance", clearance, "m"), ("rate", rate, "1/s")):
-        check_between(name, value, unit, above=0.0)
+    for name, value in (("depth", depth), ("clearance", clearance), ("rate", rate)):
+        check_between(name, value, POSITIVE[name], above=0.0)
     given = {"radius": radius, "effective_modulus": effective_modulus, "work_of_adhesion": work_of_adhesion,
              "cohesive_range": cohesive_range, "spring_constant": spring_constant, "contact_point": contact_point,
              "noise": noise, "offset": offset, "tilt": tilt, "drift": drift, "sensitivity_error": sensitivity_error,

@@ -17,6 +17,9 @@ from .curve import ForceCurve, Segment
 
 CurveModel = Literal["maugis", "jkr", "dmt", "hertz", "cone", "pyramid"]
 
+#: what has to be above 0 in one curve and in many, and its unit
+POSITIVE = {"spring_constant": "N/m", "depth": "m", "clearance": "m", "rate": "1/s",
+            "sensitivity_error": "", "spring_constant_error": ""}  # fmt: skip
 _TABLE = 20_001  # points of a cone's law between which it is taken as straight: below 1e-8 of the force
 
 
@@ -80,11 +83,10 @@ def synthesize(
     ForceCurve
         ``meta["truth"]`` holds `contact`, `model`, `contact_point`, `spring_constant`.
     """
-    for name, value, unit in (("spring_constant", spring_constant, "N/m"), ("depth", depth, "m"),
-                              ("clearance", clearance, "m"), ("rate", rate, "1/s"),
-                              ("sensitivity_error", sensitivity_error, ""),
-                              ("spring_constant_error", spring_constant_error, "")):  # fmt: skip
-        check_between(name, value, unit, above=0.0)
+    for name, value in (("spring_constant", spring_constant), ("depth", depth), ("clearance", clearance),
+                        ("rate", rate), ("sensitivity_error", sensitivity_error),
+                        ("spring_constant_error", spring_constant_error)):  # fmt: skip
+        check_between(name, value, POSITIVE[name], above=0.0)
     if points < 16:
         raise InvalidValue(f"points: {points}, expected at least 16")
     rng = np.random.default_rng(seed)
