@@ -42,6 +42,21 @@ static nt_status make_rings(nt_session *session, const nt_session_setup *setup)
     return status;
 }
 
+/* The tip is led no farther than the stage says that it goes. One that starts outside of it has other coordinates. */
+static void narrow_to_stage(nt_session *session, const nt_session_setup *setup)
+{
+    const nt_capabilities *stage = &session->slave.capabilities;
+    const double start[] = {setup->x, setup->y};
+    for (int i = 0; i < stage->rows; ++i) {
+        const nt_channel_row *row = &stage->channels[i];
+        if (!row->driven || row->axis >= NT_Z || start[row->axis] < row->minimum || start[row->axis] > row->maximum)
+            continue;
+        double *borders = session->now->touch.borders[row->axis];
+        borders[0] = fmax(borders[0], row->minimum);
+        borders[1] = fmin(borders[1], row->maximum);
+    }
+}
+
 static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_problem *problem)
 {
     nt_status status = make_rings(session, setup);
@@ -49,6 +64,8 @@ static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_pr
         status = nt_compose(&session->now, setup, NULL, problem);
     if (status == NT_OK)
         status = nt_session_open_halves(session, problem);
+    if (status == NT_OK)
+        narrow_to_stage(session, setup);
     if (status == NT_OK && setup->preflight)
         status = nt_session_fly(session, problem);
     if (status == NT_OK && setup->mode == NT_MODE_TAPPING)

@@ -76,6 +76,26 @@ static void what_is_not_there(void **state)
     nt_session_close(NULL);
 }
 
+/* Over a flat the stage's own range is what borders where the tip is sent; a request of another thread, too. */
+static void places_that_no_stage_reaches(void **state)
+{
+    (void)state;
+    const nt_session_setup setup = plain_setup();
+    nt_session *session = open_session(&setup);
+    static const double far[][2] = {{1e9, 0.0}, {0.0, -1e9}, {0.1001, 0.0}, {0.0, (double)NAN}};
+    for (int i = 0; i < 4; i++) {
+        const nt_input input = {.x = far[i][0], .y = far[i][1]};
+        nt_problem problem = {0};
+        assert_int_equal(nt_session_aim(session, &input, &problem), i == 3 ? NT_E_NOT_FINITE : NT_E_RANGE);
+        assert_string_equal(problem.field, i == 0 || i == 2 ? "input.x" : "input.y");
+        assert_string_equal(problem.unit, "m");
+        assert_true(problem.minimum == -0.1 && problem.maximum == 0.1);
+    }
+    const nt_input within = {.x = 0.0999, .y = -0.1};
+    assert_int_equal(nt_session_aim(session, &within, NULL), NT_OK);
+    nt_session_close(session);
+}
+
 /* A law of one's own that calls its session back, which it must not. */
 typedef struct caller {
     nt_session *session;
@@ -262,6 +282,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_not_there),
+        cmocka_unit_test(places_that_no_stage_reaches),
         cmocka_unit_test(a_law_cannot_run_its_own_session),
         cmocka_unit_test(a_forked_copy_does_not_publish),
         cmocka_unit_test(requests_with_numbers_that_mean_nothing),

@@ -89,6 +89,10 @@ static void add_tapping(nt_sim_slave *slave)
     link->valid |= 1u << NT_READS_AMPLITUDE | 1u << NT_READS_LAG;
 }
 
+/* Sideways the simulated stage goes as far as any stage does, which is the most that a rig may state of its travel in z
+ * [m]. */
+#define LATERAL_RANGE 0.1
+
 void nt_sim_list_slave(nt_sim_slave *slave)
 {
     static const char *const command_names[] = {"stage x", "stage y", "stage travel"};
@@ -97,7 +101,7 @@ void nt_sim_list_slave(nt_sim_slave *slave)
     link->channel_count = 0;
     link->valid = 1u << (NT_READS_POSITION + NT_Z) | 1u << (NT_READS_FELT + NT_Z);
     if (first == NT_X)
-        add_sideways(link, HUGE_VAL);
+        add_sideways(link, LATERAL_RANGE);
     add_sensor(link, position_names[NT_Z], "m", &slave->stage_sensor);
     for (int i = NT_X; i < NT_Z && link->rig.probe.lateral_stiffness > 0.0; i++) {
         add(link, &(nt_channel_row){.name = deflection_names[i],
@@ -110,7 +114,7 @@ void nt_sim_list_slave(nt_sim_slave *slave)
     }
     add_sensor(link, "deflection", "m", &slave->deflection_sensor);
     for (int i = first; i < NT_AXES; i++) {
-        const double range = i == NT_Z ? 0.5 * link->rig.stage.travel : HUGE_VAL;
+        const double range = i == NT_Z ? 0.5 * link->rig.stage.travel : LATERAL_RANGE;
         add(link, &(nt_channel_row){.name = command_names[i],
                                     .unit = "m",
                                     .driven = 1,
