@@ -153,6 +153,7 @@ bench:  ## what one call costs on this machine; JSON in build/release/tests/benc
 	@cmake --preset release --log-level WARNING >/dev/null
 	@cmake --build --preset release --target bench
 	@$(VENV)/python tests/bench/bench_session.py
+	@$(VENV)/python tests/bench/peer_loops.py build/release/tests/bench
 
 # generated tables keep the generator's lines, a part of a kernel the kernel's style
 C_FILES = $(filter-out tests/reference/%_table.h apps/mcu/plan.h tests/kernel/spi_bus.c tests/kernel/nanotouch_bus.h, $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp'))

@@ -26,13 +26,14 @@ of a scalar call and `session.step` from Python, the bytecode instructions and t
 
 `make bench` measures, `python tests/bench/speed.py build/release/tests/bench` writes this page.
 
-| call | ns | Hertz | with AVX2: ns | Hertz | last version: ns | limit | counted |
-|---|---|---|---|---|---|---|---|
+| call | ns | Hertz | with AVX2: ns | Hertz | last version: ns | numba: ns | limit | counted |
+|---|---|---|---|---|---|---|---|---|
 """
 
 TAIL = """
 F alone comes {ratio:.2g} times as fast from the table as U, F, k and a. The first *ns* are of what the processor
-offers, here AVX-512. Every column gives the same bits.
+offers, here AVX-512. Both give the same bits. *numba* is a plain loop over Hertz and one of Newton's method
+over JKR, with neither branches nor a check (`tests/bench/peer_loops.py`, where numba is installed).
 
 ## What made the difference
 
@@ -73,6 +74,10 @@ def measured(folder: Path) -> None:
         if column == "avx2":
             kept["hertz"] = times["hertz array"]
             kept["avx2_worst"] = max(row["hertz"] for row in found if row["name"] == "maugis exact array")
+    peers = folder / "peers.json"
+    if peers.exists():
+        times = json.loads(peers.read_text())
+        kept["rows"] = [row | ({"peer": times[row["bench"]]} if row["bench"] in times else {}) for row in kept["rows"]]
     lines = ",\n    ".join(json.dumps(row) for row in kept.pop("rows"))
     text = json.dumps(kept, indent=2)[:-2] + f',\n  "rows": [\n    {lines}\n  ]\n}}\n'
     (HERE / "speed.json").write_text(text)
@@ -87,9 +92,10 @@ def page() -> str:
     for row in kept["rows"]:
         now, avx2 = row["now"], row["avx2"]
         count = f"{counts[row['count']]:.4g}" if row["count"] else ""
+        peer = f"{row['peer']:.3g}" if row.get("peer") else ""
         text += (
             f"| {row['call']} | {now:.3g} | {now / hertz:.3g} | {avx2:.3g} | {avx2 / hertz:.3g} | {row['last']:.4g} "
-            f"| {row['limit']} | {count} |\n"
+            f"| {peer} | {row['limit']} | {count} |\n"
         )
     ratio = times["maugis table array U F k a"] / times["maugis table array"]
     return text + TAIL.format(ratio=ratio, worst=kept["avx2_worst"])
