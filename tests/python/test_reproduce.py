@@ -14,6 +14,7 @@ from nanotouch.contact import Contact
 from nanotouch_app.studies import reproduce
 from nanotouch_app.studies.reproduce import figure5, figure6, figure9, figure10, figure11, unloading
 from nanotouch_app.studies.reproduce.statement import Statement
+from reproduced import reproduction
 
 pytest.importorskip("matplotlib")
 brentq = pytest.importorskip("scipy.optimize").brentq
@@ -23,7 +24,7 @@ SPRING = 8.0
 
 @pytest.fixture(scope="module")
 def statements() -> dict[int, list[Statement]]:
-    return {number: list(reproduce.reproduction(number).statements) for number in reproduce.FIGURES}
+    return {number: list(reproduction(number).statements) for number in reproduce.FIGURES}
 
 
 def find(statements: list[Statement], start: str) -> Statement:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import reproduced
 from nanotouch_app.main import main
 from nanotouch_app.studies import reproduce
 from nanotouch_app.studies.reproduce.statement import quantity
@@ -17,6 +18,11 @@ from nanotouch_app.studies.reproduce.statement import quantity
 pytest.importorskip("matplotlib")
 
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "evidence" / "reproduction.md"
+
+
+@pytest.fixture(autouse=True)
+def _computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reproduce, "reproduction", reproduced.reproduction)
 
 
 def read(path: Path) -> tuple[list[str], list[list[float]]]:

@@ -8,16 +8,16 @@ import math
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch_app.studies import reproduce
 from nanotouch_app.studies.reproduce import figure16, figure17, figure18, figure19, touching
 from nanotouch_app.studies.reproduce.statement import Statement
+from reproduced import reproduction
 
 pytest.importorskip("matplotlib")
 
 
 @pytest.fixture(scope="module")
 def statements() -> dict[int, list[Statement]]:
-    return {number: list(reproduce.reproduction(number).statements) for number in (16, 17, 18, 19)}
+    return {number: list(reproduction(number).statements) for number in (16, 17, 18, 19)}
 
 
 def find(statements: list[Statement], start: str) -> Statement:
@@ -94,5 +94,5 @@ def test_what_figure_17_lets_a_hand_feel(statements: dict[int, list[Statement]])
 
 def test_columns_have_no_gaps() -> None:
     for number in (16, 17, 18, 19):
-        for header, values in reproduce.reproduction(number).columns.items():
+        for header, values in reproduction(number).columns.items():
             assert np.isfinite(values).all(), header
