@@ -10,6 +10,7 @@ from typing import Any
 import pictures
 import pytest
 from nanotouch._io import drawing
+from nanotouch_app import view
 
 
 def pytest_configure() -> None:
@@ -38,7 +39,8 @@ def every_series_is_seen() -> Iterator[None]:
 
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For tests of other things: a picture takes its time. Figures are made as ever, their files are empty."""
+    """For tests of other things: a picture takes its time. Figures are made, scenes of VTK
+    are not; the files of both are empty."""
 
     def savefig(self: Any, file: Any, **kwargs: Any) -> None:
         if not hasattr(file, "write"):
@@ -46,3 +48,4 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
     figure = pytest.importorskip("matplotlib.figure").Figure
     monkeypatch.setattr(drawing._shown(figure), "savefig", savefig)
+    monkeypatch.setattr(view, "render_png", lambda _topography, _recording, path, **_: Path(path).touch())

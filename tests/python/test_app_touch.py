@@ -44,12 +44,6 @@ def no_display(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv(name, raising=False)
 
 
-@pytest.fixture
-def no_view(monkeypatch: pytest.MonkeyPatch, undrawn: None) -> None:
-    """For tests of other things: pictures take their time."""
-    monkeypatch.setattr(view, "render_png", lambda _topography, _recording, path, **_: Path(path).touch())
-
-
 def names(folder: Path) -> set[str]:
     return {path.name for path in folder.iterdir()}
 
@@ -94,7 +88,7 @@ def test_leaves_what_it_promises(
         assert pixels[..., :3].std() > 0.02, f"{picture} is blank"
 
 
-def test_what_it_says_is_what_it_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+def test_what_it_says_is_what_it_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     """On a flat at the defaults: the plan's 18 nN, felt through alpha_f."""
     assert main(["touch", "--surface", "flat", "--verbose", "--out", str(tmp_path)]) == 0
     said = capsys.readouterr().out
@@ -110,7 +104,7 @@ def test_what_it_says_is_what_it_writes(tmp_path: Path, capsys: pytest.CaptureFi
     assert summary["position_tracking_rms_m"] < 5e-9  # the paper's stage: 1 nm steps
 
 
-def test_a_touch_is_told_in_four_answers(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+def test_a_touch_is_told_in_four_answers(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     """What was touched, what was felt, was it safe, what to try next: short lines, the numbers of summary.json."""
     assert main(["touch", "--surface", "flat", "--out", str(tmp_path)]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -137,7 +131,7 @@ def test_a_touch_that_was_stopped_is_not_called_safe() -> None:
     assert told.verdict(stopped) == "it was stopped: HOLD for 0.002 s, RETRACT for 0.3 s (force limit)"
 
 
-def test_a_touch_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+def test_a_touch_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     assert main(["touch", "--surface", "flat", "--duration", "1s", "--json", "--out", str(tmp_path)]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed.pop("folder") == str(tmp_path)
@@ -145,14 +139,14 @@ def test_a_touch_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_
     assert printed == json.loads((tmp_path / "summary.json").read_text())
 
 
-def test_same_seed_same_recording(tmp_path: Path, no_view: None) -> None:
+def test_same_seed_same_recording(tmp_path: Path, undrawn: None) -> None:
     for name, seed in (("one", "3"), ("two", "3"), ("three", "4")):
         assert main(["touch", "--seed", seed, "--duration", "1s", "--out", str(tmp_path / name)]) == 0
     one, two, three = ((tmp_path / name / "recording.mcap").read_bytes() for name in ("one", "two", "three"))
     assert one == two != three
 
 
-def test_overwrite_replaces_all_of_the_first_run(tmp_path: Path, no_view: None) -> None:
+def test_overwrite_replaces_all_of_the_first_run(tmp_path: Path, undrawn: None) -> None:
     """What a scan left does not stand beside the results of a point; the user's own files stay."""
     (tmp_path / "notes.txt").write_text("mine")
     short = ["--surface", "flat", "--out", str(tmp_path)]
@@ -163,7 +157,7 @@ def test_overwrite_replaces_all_of_the_first_run(tmp_path: Path, no_view: None) 
     assert json.loads((tmp_path / "summary.json").read_text())["mode"] == "point"
 
 
-def test_touches_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+def test_touches_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     """Tilted by 2 degrees, read through its own format, levelled, and felt where it was asked for."""
     heights = grating(pixels=64, height=100e-9).heights
     tilt = 0.035 * 6e-6 / 64 * np.arange(64)
@@ -184,7 +178,7 @@ def test_touches_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str], no
     assert recording.surface_height[-1] == pytest.approx(50e-9, abs=5e-9)
 
 
-def test_image_without_units_is_touched_with_them(tmp_path: Path, no_view: None) -> None:
+def test_image_without_units_is_touched_with_them(tmp_path: Path, undrawn: None) -> None:
     file = write_matrix(tmp_path / "matrix.txt", grating(pixels=32, height=100e-9).heights * 1e9, None, None)
     out = tmp_path / "out"
     arguments = ["touch", str(file), "--duration", "1s", "--out", str(out)]
@@ -194,7 +188,7 @@ def test_image_without_units_is_touched_with_them(tmp_path: Path, no_view: None)
     assert np.ptp(record.read(out / "recording.mcap").surface_height) == 0.0
 
 
-def test_scene_file(tmp_path: Path, no_view: None) -> None:
+def test_scene_file(tmp_path: Path, undrawn: None) -> None:
     file = tmp_path / "scene.toml"
     file.write_text(
         "[tip]\nradius_nm = 40\n[probe]\nspring_constant_N_per_m = 20\n[gains]\nrate_kHz = 5\nforce_gain = 1\n"
@@ -209,7 +203,7 @@ def test_scene_file(tmp_path: Path, no_view: None) -> None:
     assert metadata["settings"]["gains"]["force_gain"] == 1.0
 
 
-def test_too_short_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+def test_too_short_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     """Nothing was felt: it says so, with null in the summary."""
     assert main(["touch", "--duration", "0.05s", "--verbose", "--out", str(tmp_path)]) == 0
     summary = json.loads((tmp_path / "summary.json").read_text())
@@ -224,7 +218,7 @@ def test_too_short_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str], 
     assert "pull-off          none: no sudden release on the way out" in touched
 
 
-def test_window_opens_where_there_is_a_display(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, no_view: None) -> None:
+def test_window_opens_where_there_is_a_display(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, undrawn: None) -> None:
     opened: list[float] = []
     monkeypatch.setattr(view, "open_window", lambda _topography, _recording, radius: opened.append(radius))
     arguments = ["touch", "--duration", "0.5s", "--out", str(tmp_path), "--overwrite"]
@@ -269,7 +263,7 @@ def test_promised_files_are_listed_once() -> None:
     assert set(touch.FILES) == ALWAYS | {"line.png"}
 
 
-def test_approach_and_curve(no_view: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_approach_and_curve(undrawn: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["touch", "--surface", "flat", "--mode", "approach", "--out", str(tmp_path / "a")]) == 0
     found = json.loads((tmp_path / "a" / "summary.json").read_text())
     assert names(tmp_path / "a") == ALWAYS | {"summary.json"}
@@ -284,7 +278,7 @@ def test_approach_and_curve(no_view: None, tmp_path: Path, capsys: pytest.Captur
     assert "N_p = 400" in said
 
 
-def test_how_the_loop_is_closed(no_view: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_how_the_loop_is_closed(undrawn: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["touch", "--surface", "flat", "--out", str(tmp_path), "--duration", "2s", "--overwrite", "--verbose"]
     assert main([*command, "--control", "paper"]) == 2  # its own stage loop is unstable
     assert "not armed: stability margin 0 (exact contact), at least 1.5" in capsys.readouterr().err
@@ -311,7 +305,7 @@ def test_how_the_loop_is_closed(no_view: None, tmp_path: Path, capsys: pytest.Ca
     assert main([*command, "--force-range", "5"]) == 2
 
 
-def test_an_image_is_levelled_as_it_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+def test_an_image_is_levelled_as_it_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None) -> None:
     """A bow of 40 nm: found by itself, left to a plane, left alone; and a method that is none."""
     y, x = np.indices((64, 64)) / 63.0 - 0.5
     heights = 160e-9 * x**2 + 0.1e-9 * np.random.default_rng(1).standard_normal(x.shape) + 20e-9 * y
