@@ -95,6 +95,9 @@ def test_the_same_seed_gives_the_same_curve_and_nonsense_is_refused() -> None:
     a, b, c = (made(noise=1e-11, seed=seed).segments[0].force for seed in (1, 1, 2))
     np.testing.assert_array_equal(a, b)  # type: ignore[arg-type]
     assert not np.array_equal(a, c)  # type: ignore[arg-type]
-    for bad in ({"depth": 0.0}, {"points": 3}, {"sensitivity_error": -1.0}):
-        with pytest.raises(InvalidValue):
+    for bad in ({"depth": 0.0}, {"points": 3}, {"sensitivity_error": -1.0}, {"noise": -1e-12}, {"noise": np.nan},
+                {"noise": "10pN"}, {"noise": True}, {"offset": np.inf}, {"seed": 1.5}, {"depth": [1e-8]}):  # fmt: skip
+        with pytest.raises(InvalidValue, match=next(iter(bad))):
             made(**bad)
+    with pytest.raises(InvalidValue, match="model 'sphere': valid are maugis, jkr"):
+        nt.curves.synthesize(nt.Contact(20e-9, 1e9), "sphere", spring_constant=1.0)  # type: ignore[arg-type]

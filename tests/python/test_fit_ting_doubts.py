@@ -147,6 +147,7 @@ def test_a_power_of_no_tip_is_a_doubt() -> None:
     found = fit.fit_curve(steep, "ting_power", branch="approach", **HERE)
     assert found.status == "misfit"
     assert "with which the force rises is not 1.5" in found.doubt
+    assert f"misfit, not to be relied on: {found.doubt}" in str(found)  # beside the modulus
     round_tip = curve_of(Sample(2e3, 0.0), 600, noise=100e-12)
     assert fit.fit_curve(round_tip, "ting_power", branch="approach", **HERE).status == "ok"
 

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
-from nanotouch import Session, Settings, Surface, presets, surface
+from nanotouch import Faults, Session, Settings, Surface, presets, surface, testing
+from nanotouch.errors import InvalidValue
 from nanotouch.touch.operator import script_for
 
 GRATING = Surface(surface.grating(pixels=128), 20e-9)
@@ -78,3 +81,22 @@ def test_the_default_hand_comes_down_below_a_small_force_limit() -> None:
     touch = session.run()
     assert not touch.state.any()
     assert touch.tip_force.max() > 0.3 * limits.force  # it presses all the same
+
+
+@pytest.mark.parametrize(
+    ("step", "words"),
+    [
+        ((1.0, 2.0, 3.0), "expected"),
+        ((np.nan, 1.0), "force = nan N"),
+        (("1N", 1.0), "force = '1N'"),
+        ((1.0, 0.0), "duration = 0 s"),
+    ],
+)
+def test_a_step_of_a_scripted_hand_that_is_none(step: Any, words: str) -> None:
+    with pytest.raises(InvalidValue, match=words):
+        testing.scripted_hand(Session(), step)
+
+
+def test_a_time_of_a_fault_that_is_no_number() -> None:
+    with pytest.raises(InvalidValue, match=r"fault 'nan': at = '0\.1': it must be a number"):
+        Faults().add("nan", "deflection", at="0.1")  # type: ignore[arg-type]

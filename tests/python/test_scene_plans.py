@@ -60,3 +60,15 @@ def test_what_is_no_study_is_refused(over: Any, words: str) -> None:
 def test_a_demand_that_is_none_is_refused_by_name() -> None:
     with pytest.raises(InvalidValue, match=r"demand: expected a nanotouch\.Demand, not 0\.01"):
         nt.Scene().plans({"tip.radius": [1e-8]}, 0.01)  # type: ignore[arg-type]
+
+
+def test_units_are_refused_not_stripped() -> None:
+    """10 with the unit nm was taken for 10 m."""
+    radii = pytest.importorskip("xarray").DataArray([10.0, 20.0], attrs={"units": "nm"})
+    with pytest.raises(TypeError, match="carries a unit"):
+        nt.Scene().plans({"tip.radius": radii})
+
+
+def test_what_is_no_mapping_is_named() -> None:
+    with pytest.raises(InvalidValue, match="expected a mapping"):
+        nt.Scene().plans([("tip.radius", [1e-8])])  # type: ignore[arg-type]

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from operator import index
+from typing import Any, NamedTuple, SupportsFloat, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -81,9 +82,23 @@ def value_over(ufunc: np.ufunc, operands: Sequence[Any], out: Any, where: Any) -
 
 def check_between(name: str, value: float, unit: str, *, above: float, up_to: float = np.inf) -> None:
     """Raise :class:`~nanotouch.errors.InvalidValue` unless ``above`` < value <= ``up_to``."""
-    if not above < value <= up_to:
+    if not above < as_number(name, value, unit) <= up_to:
         span = f"above {above:g}" + (f", up to {up_to:g}" if up_to < np.inf else "")
         raise InvalidValue(f"{name} = {value:g} {unit}".rstrip() + f": it must be {span} {unit}".rstrip())
+
+
+def as_number(name: str, value: Any, unit: str) -> float:
+    """One real number; text, truth values and what has parts are none."""
+    if isinstance(value, bool | np.bool_) or not isinstance(value, SupportsFloat) or getattr(value, "ndim", 0) != 0:
+        raise InvalidValue(f"{name} = {value!r:.80}: it must be a number {f'[{unit}]' if unit else ''}".rstrip())
+    return float(value)
+
+
+def as_count(name: str, value: Any, least: int) -> int:
+    """A whole number from `least` on."""
+    if isinstance(value, bool | np.bool_) or not isinstance(value, SupportsIndex) or index(value) < least:
+        raise InvalidValue(f"{name} = {value!r:.80}: valid is a whole number from {least} on")
+    return index(value)
 
 
 class LawValue(NamedTuple):

@@ -12,16 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .. import contact as laws
-from .._arrays import as_floats, check_between
+from .._arrays import as_count, as_floats, check_between
 from ..errors import InvalidValue
 from .curve import ForceCurve, Segment
-from .synthesis import POSITIVE
+from .synthesis import ANY, FEWEST_POINTS, POSITIVE
 
 Floats = NDArray[np.float64]
 _CHUNK = 64  # curves that share a stream of noise; part of what a seed means
 _POSITIVE = POSITIVE | {"radius": "m", "effective_modulus": "Pa", "cohesive_range": "m"}
 _NOT_NEGATIVE = {"work_of_adhesion": "J/m^2", "noise": "N"}
-_ANY = {"contact_point": "m", "offset": "N", "tilt": "N/m", "drift": "m/s"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,10 +120,8 @@ def synthesize_batch(
     InvalidValue
         A parameter outside its range, with the number of the curve; an array of another shape.
     """
-    if n < 1 or points < 16 or workers < 1:
-        raise InvalidValue(
-            f"n = {n}, points = {points}, workers = {workers}: valid are n >= 1, points >= 16, workers >= 1"
-        )
+    n, points, workers = as_count("n", n, 1), as_count("points", points, FEWEST_POINTS), as_count("workers", workers, 1)
+    seed = as_count("seed", seed, 0)
     if model not in laws.MODELS:
         raise InvalidValue(f"model {model!r}: valid are {', '.join(laws.MODELS)}")
     for name, value in (("depth", depth), ("clearance", clearance), ("rate", rate)):
@@ -157,7 +154,7 @@ def _of_each(name: str, values: ArrayLike, n: int) -> Floats:
     right = array > 0.0 if name in _POSITIVE else array >= 0.0 if name in _NOT_NEGATIVE else np.isfinite(array)
     wrong = np.flatnonzero(~(right & np.isfinite(array)))
     if wrong.size:
-        unit = {**_POSITIVE, **_NOT_NEGATIVE, **_ANY}[name]
+        unit = {**_POSITIVE, **_NOT_NEGATIVE, **ANY}[name]
         range_of = "above 0" if name in _POSITIVE else "at least 0" if name in _NOT_NEGATIVE else "finite"
         raise InvalidValue(
             f"{name} = {array[wrong[0]]:g} {unit}".rstrip() + f" of curve {wrong[0]}: it must be {range_of}"

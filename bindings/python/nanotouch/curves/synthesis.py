@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
 from .. import contact as laws
-from .._arrays import check_between
+from .._arrays import as_count, as_number, check_between
 from ..contact import geometry
 from ..errors import InvalidValue
 from .curve import ForceCurve, Segment
@@ -20,6 +20,9 @@ CurveModel = Literal["maugis", "jkr", "dmt", "hertz", "cone", "pyramid"]
 #: what has to be above 0 in one curve and in many, and its unit
 POSITIVE = {"spring_constant": "N/m", "depth": "m", "clearance": "m", "rate": "1/s",
             "sensitivity_error": "", "spring_constant_error": ""}  # fmt: skip
+#: what may be any finite number (noise: not below 0), and its unit
+ANY = {"contact_point": "m", "noise": "N", "offset": "N", "tilt": "N/m", "drift": "m/s"}
+FEWEST_POINTS = 16  # of a branch
 _TABLE = 20_001  # points of a cone's law between which it is taken as straight: below 1e-8 of the force
 
 
@@ -87,8 +90,14 @@ def synthesize(
                         ("rate", rate), ("sensitivity_error", sensitivity_error),
                         ("spring_constant_error", spring_constant_error)):  # fmt: skip
         check_between(name, value, POSITIVE[name], above=0.0)
-    if points < 16:
-        raise InvalidValue(f"points: {points}, expected at least 16")
+    for name, value in (("contact_point", contact_point), ("noise", noise), ("offset", offset), ("tilt", tilt),
+                        ("drift", drift)):  # fmt: skip
+        number, unit = as_number(name, value, ANY[name]), ANY[name]
+        if not np.isfinite(number) or (name == "noise" and number < 0.0):
+            raise InvalidValue(f"{name} = {number:g} {unit}: it must be finite" + ", 0 or more" * (name == "noise"))
+    if model not in get_args(CurveModel):
+        raise InvalidValue(f"model {model!r}: valid are {', '.join(get_args(CurveModel))}")
+    points, seed = as_count("points", points, FEWEST_POINTS), as_count("seed", seed, 0)
     rng = np.random.default_rng(seed)
     stated = spring_constant * spring_constant_error
     if model == "cone" or model == "pyramid":

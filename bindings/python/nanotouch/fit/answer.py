@@ -219,6 +219,8 @@ def _modulus(result: FitResult) -> tuple[tuple[float, float, float], list[tuple[
     if result.determined(key) is not False and result.sigma[key] > 0.0:
         text += f", 95 % {between(low, high, 'Pa')}"
     lines = [("modulus", f"{title} {text}")]
+    if result.status == "misfit" and result.determined(key) is not False:
+        lines.append(("", f"misfit, not to be relied on: {result.doubt or 'the residuals are no noise'}"))
     if result.assumed_tip:
         sharp = is_sharp(result.model)
         size = f"{np.degrees(result.half_angle):.3g} degrees" if sharp else f"R = {in_words(result.radius, 'm')}"

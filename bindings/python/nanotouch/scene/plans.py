@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nanotouch._arrays import refuse_dressed
+from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue, require
 from nanotouch.scene.plan import Plan
 
@@ -34,7 +36,10 @@ def plans_over(scene: Scene, over: Mapping[str, Sequence[Any]], demand: Demand |
     if demand is not None and not hasattr(demand, "core"):
         wanted = f"nanotouch.Demand(demand={{'relative_accuracy': {demand!r}}})"
         raise InvalidValue(f"demand: expected a nanotouch.Demand, not {demand!r}: for an accuracy {wanted}")
+    if not isinstance(over, Mapping):
+        raise InvalidValue(f"over = {told(over)}: expected a mapping of fields to their values")
     for name, values in over.items():
+        refuse_dressed(values, f"over[{name!r}]")
         if name not in scene.fields:
             raise InvalidValue(f"over: {name!r} is no field of a scene; fields are named as in scene['tip.radius']")
         if np.ndim(values) != 1 or len(values) == 0:
