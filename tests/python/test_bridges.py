@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import os
 import re
@@ -231,6 +232,22 @@ def test_a_force_beyond_the_range_or_no_number_reaches_no_device() -> None:
     asks.age = 0.0
     asks.is_armed, asks.target = False, (0.0, 0.0, 0.0)
     assert heavy.ask().target == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("has", [True, False])
+def test_a_wheel_is_not_pulled_to_its_middle_and_plays_the_force_that_is_asked(
+    has: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its driver begins with a spring of its own, and another program has left a gain."""
+    with placed(KINDS[3], tmp_path, monkeypatch, autocenter=1.0, gain=0.4) as wheel:
+        evdev = importlib.import_module("evdev")
+        if not has:
+            monkeypatch.setattr(evdev, "TUNED", [])
+        found = importlib.import_module("nanotouch_app.devices.wheel").Wheel("")
+        found.push((0.0, 0.0, 2.0))
+        assert wheel.pressed() == pytest.approx(2.0 if has else 0.8, abs=0.01)
+        assert wheel.desk.autocenter == (0.0 if has else 1.0)
+        found.close()
 
 
 def test_touch_says_what_a_script_leads_and_what_the_hand(

@@ -106,8 +106,7 @@ def serve(device: Device, args: argparse.Namespace, stopped: threading.Event) ->
 
         def announce() -> None:
             if box.first.wait(PATIENCE):
-                guards.append(_guard(args))
-                print("ready", flush=True)
+                guards.append(_guard(args))  # which says that we are ready
             elif not stopped.is_set():
                 late.append(box.trouble or "no reading has come")
                 stopped.set()
@@ -131,8 +130,11 @@ def _guard(args: argparse.Namespace) -> subprocess.Popen[bytes]:
 
 
 def watch(device: Device, option: str) -> None:
-    """The guard: wait for the end of the bridge."""
+    """The guard: wait for the end of the bridge. It loads before anybody relies on the bridge, and behind other
+    programs: before them it would keep the maker's service from answering, and readings would grow old."""
     module_of(device)  # now, not when it is needed
+    _run_first()
+    print("ready", flush=True)
     said = b""
     while more := os.read(0, 4096):
         said += more
@@ -171,6 +173,12 @@ def _listen(stopped: threading.Event) -> None:
         stopped.set()
 
     threading.Thread(target=wait, daemon=True).start()
+
+
+def _run_as_others() -> None:
+    """As a program that nobody waits for."""
+    with suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
 def _run_first() -> None:
@@ -218,5 +226,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    _run_first()
+    _run_as_others() if "--guard" in sys.argv else _run_first()
     sys.exit(main())

@@ -27,7 +27,7 @@ TORQUE = 2.0  # of a full force; makers state 2 to 8 [N m]
 REACH = 0.6 * RIM * TURN  # [m]
 STRONGEST = TORQUE / RIM  # at the rim [N]
 LENGTH = 60  # that the kernel plays a force for [ms]
-FULL = 0x7FFF
+FULL, WHOLE = 0x7FFF, 0xFFFF  # of a force; of the gain
 LEFT, RIGHT = 0x4000, 0xC000  # where Linux lets a force pull to
 
 
@@ -46,6 +46,14 @@ class Wheel:
         info = self.device.absinfo(self.codes.ABS_X)
         self.middle, self.scale = 0.5 * (info.max + info.min), RIM * TURN / max(1, info.max - info.min)
         self.effect = -1
+        self._alone()
+
+    def _alone(self) -> None:
+        """No spring of its driver pulls it to its middle, and a force is played whole."""
+        offered = self.device.capabilities(absinfo=False)[self.codes.EV_FF]
+        for code, value in ((self.codes.FF_AUTOCENTER, 0), (self.codes.FF_GAIN, WHOLE)):
+            if code in offered:
+                self.device.write(self.codes.EV_FF, code, value)
 
     def _opened(self, option: str) -> Any:
         codes, denied = self.evdev.ecodes, []

@@ -24,6 +24,7 @@ NAMES = (
     "px", "py", "pz",  # what the device pushes by itself
     "watchdog",  # the firmware lets go without a new force for so long; 0: it has none
     "buttons", "present", "garbage", "stall", "opened", "moved",
+    "gain", "autocenter",  # of a wheel's driver
 )  # fmt: skip
 FORMAT = f"{len(NAMES)}d"
 TARGET, HELD, MASS, GRAVITY, FRICTION, OWN = map(NAMES.index, ("tx", "stiffness", "mass", "gx", "friction", "px"))
@@ -44,7 +45,8 @@ class Desk:
     def new(cls, path: str | os.PathLike[str], **values: float) -> Desk:
         """A device that is plugged in, held loosely in the middle."""
         desk = cls(path)
-        usual = {"present": 1.0, "mass": 0.2, "stiffness": 300.0, "damping": 6.0, "stepped": time.monotonic()}
+        usual = {"present": 1.0, "mass": 0.2, "stiffness": 300.0, "damping": 6.0, "gain": 1.0}
+        usual["stepped"] = time.monotonic()
         for name, value in (usual | values).items():
             setattr(desk, name, value)
         return desk

@@ -11,6 +11,7 @@ from desk import Desk
 from . import ecodes as ecodes
 from . import ff as ff
 
+TUNED = [ecodes.FF_GAIN, ecodes.FF_AUTOCENTER]  # not every driver has them
 PATH, SCALE = "/dev/input/event7", 65535 / (0.14 * math.radians(900.0))
 
 
@@ -37,7 +38,11 @@ class InputDevice:
         self.effects = {}
 
     def capabilities(self, verbose=False, absinfo=True):
-        return {ecodes.EV_ABS: [ecodes.ABS_X], ecodes.EV_FF: [ecodes.FF_CONSTANT], ecodes.EV_KEY: [ecodes.BTN_JOYSTICK]}
+        return {
+            ecodes.EV_ABS: [ecodes.ABS_X],
+            ecodes.EV_FF: [ecodes.FF_CONSTANT, *TUNED],
+            ecodes.EV_KEY: [ecodes.BTN_JOYSTICK],
+        }
 
     def _check(self):
         if self.desk.present != 1.0:
@@ -46,6 +51,7 @@ class InputDevice:
     def absinfo(self, axis_num):
         self._check()
         if self.desk.stall != 1.0:
+            self.desk.px = -100.0 * self.desk.autocenter * self.desk.x
             self.desk.move()
         return AbsInfo(round(32767.5 + SCALE * self.desk.x), 0, 65535, 0, 0, 0)
 
@@ -62,11 +68,14 @@ class InputDevice:
     def write(self, etype, code, value):
         """An effect pulls to where its direction says, and ends by itself."""
         self._check()
+        if code in TUNED:
+            setattr(self.desk, "gain" if code == ecodes.FF_GAIN else "autocenter", value / 0xFFFF)
+            return
         effect = self.effects[code]
         level = effect.u.ff_constant_effect.level / 0x7FFF
         to = {0x4000: -1.0, 0xC000: 1.0}[effect.direction]
         self.desk.watchdog = effect.ff_replay.length * 1e-3  # the kernel's timer
-        self.desk.force(to * level * value * 2.0 / 0.14, 0.0, 0.0)
+        self.desk.force(to * level * self.desk.gain * value * 2.0 / 0.14, 0.0, 0.0)
 
     def erase_effect(self, ff_id):
         self._check()
