@@ -24,6 +24,7 @@ OF_THEIR_OWN = {
     ("manipulation/pushing.py", "_done"),  # its own track
     ("maps/touched.py", "_filled"),  # of a map that a fit has made
     ("touch/columns.py", "_converted"),  # integers too; refuses masks and units in its own words
+    ("touch/sessions.py", "_values"),  # names of choices too; the door's refusals before
     ("units.py", "engineering"),  # picks a prefix for a text
 }
 

@@ -112,3 +112,13 @@ def test_wrong_inputs_move_nothing() -> None:
     many[1].core.advance(5)  # and not read
     with pytest.raises(nt.Error, match="session 1: it has been run on its own"):
         many.advance(0.01)
+
+
+def test_a_unit_is_refused_not_stripped() -> None:
+    """5 with the unit nm would be 5 m; a masked value would be taken as measured."""
+    for radii in (
+        np.ma.masked_array([1e-8, 2e-8], [0, 1]),
+        pytest.importorskip("xarray").DataArray([10.0], attrs={"units": "nm"}),
+    ):
+        with pytest.raises(TypeError, match=r"tip\.radius"):
+            nt.Sessions(vary={"tip.radius": radii})
