@@ -277,7 +277,7 @@ def test_the_command_leads_a_real_stage_at_hard_pace(screen: str, tmp_path: Path
 
 def test_no_window_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("vtkmodules")
-    monkeypatch.setattr("nanotouch.touch._live.WINDOW", "nanotouch_app.live.nothing")
+    monkeypatch.setattr("nanotouch.touch.views.WINDOW", "nanotouch_app.live.nothing")
     with pytest.raises(nt.Error, match="could not be opened"):
         nt.Session(seed=1, recorded=False).live()
 

@@ -11,7 +11,7 @@ from typing import Literal
 
 import nanotouch as nt
 from nanotouch.errors import Error, InvalidValue, require
-from nanotouch.touch import _live
+from nanotouch.touch import views
 
 from nanotouch_app.browser import page
 
@@ -47,12 +47,12 @@ class Shown:
         """to say: where pages find it"""
         self.leave = "Ctrl-C ends the session" if args.browser else "Q in the window leaves, Escape stops"
         if not args.browser:
-            self.view = _live.window(session, leads)
+            self.view = views.window(session, leads)
             return
         options = ["--sideways"] if leads == "sideways" else ["--lead"] * leads
         options += ["--recorded"] * (args.record is not None) + ["--port", str(args.port or 0)]
         options += [] if args.page is None else ["--page", str(args.page)]
-        self.view = _live.viewed(session, PAGES, options)
+        self.view = views.viewed(session, PAGES, options)
         self.words = str(json.loads(self.view.first)["words"])
 
     def is_open(self) -> bool:

@@ -17,7 +17,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.scene import BOUNDS, Rig, Scene, Settings
 from nanotouch.scene.plan import Plan
 from nanotouch.scene.surface import Surface
-from nanotouch.touch import _live, _stopped, _told, margins
+from nanotouch.touch import _stopped, _told, margins, views
 from nanotouch.touch._control import CONTROLS, Control, ControlLaw, choose_control
 from nanotouch.touch._open import TOLD, Frozen, Runs, as_now
 from nanotouch.touch._path import MODES, Mode, checked_path, core_mode
@@ -297,7 +297,7 @@ class Session(Runs, Frozen):
         own = {REWINDS_BEFORE: begun} if begun else {}
         return Recording(columns, metadata | own | ({ROWS: len(columns["time"])} if keep else {}))
 
-    live = _live.watch
+    live = views.watch
 
     __repr__ = _told.in_a_line
     _repr_html_ = _told.as_html
