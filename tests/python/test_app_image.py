@@ -59,6 +59,7 @@ def test_dots_from_file_to_table(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert again.height_range == pytest.approx(surface.dots(500e-9, 256, count=12).height_range, abs=1e-9)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_every_step_and_its_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Lines along the fast axis under the plain alignment: the loss is printed, not raised; then the grating kept."""
     heights, _ = synthetic.grating(128, along_y=False)

@@ -199,6 +199,7 @@ NAMES = [
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems do not have such names")
+@pytest.mark.usefixtures("undrawn")
 def test_any_name_a_file_can_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Bytes that are no UTF-8, line ends, formulas of matplotlib: a row, a picture and a line of text for each."""
     pytest.importorskip("matplotlib")

@@ -70,6 +70,7 @@ def test_by_grain() -> None:
 
 
 @pytest.mark.parametrize("what", ["1nm", "grains", "picture"])
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_leaves_out_what_is_masked(what: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     image, where = dots()
     path = synthetic.write_gwy(tmp_path / "dots.gwy", image.heights, image.size)

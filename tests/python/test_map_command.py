@@ -56,6 +56,7 @@ def test_leaves_the_map_a_picture_and_a_summary(
     assert "effective_modulus" in said
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_goes_on_from_what_a_stopped_run_left(
     volume_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -89,6 +90,7 @@ def test_a_file_that_is_no_map_is_refused(tmp_path: Path, capsys: pytest.Capture
     assert "notes.txt" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_sidecar_holds_for_maps_too(volume_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Left out, a contact point and a baseline by hand: as one fit of that curve; all others as without."""
     plain = maps.fit(volume_file, "dmt", radius=20e-9, spring_constant=STIFFNESS)

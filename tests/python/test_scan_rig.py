@@ -52,6 +52,7 @@ def rig(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> type[Ranged]:
     return Ranged
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_image_is_that_of_the_device(rig: type[Ranged], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["scan", "--scene", "rig.toml", *RASTER, "--out", "out"]) == 0
     told = capsys.readouterr().out
@@ -110,6 +111,7 @@ def test_a_forecast_is_told_for_the_same_area(rig: type[Ranged], capsys: pytest.
     assert "scan takes" in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_area_is_the_slaves(rig: type[Ranged], monkeypatch: pytest.MonkeyPatch) -> None:
     """6 um are the flat's of the built-in surfaces, not the slave's."""
     monkeypatch.setattr(Ranged, "last", 20e-6)

@@ -226,6 +226,7 @@ def test_the_command_scans(device: type[Stairs], capsys: pytest.CaptureFixture[s
     assert json.loads(Path("out/scan.json").read_text())["peak_force"] is None
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_holds_a_phase(device: type[Stairs], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["scan", "--scene", "rig.toml", *RASTER, "--mode", "phase", "--out", "out"]) == 0
     assert "a phase of 45 degrees is held" in capsys.readouterr().out

@@ -63,6 +63,7 @@ def test_an_error_on_the_way_ends_the_thread(stage: Path) -> None:
     assert not session.progress.runs
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command(stage: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     options = ["--no-window", "--minimum-margin", "0", "--duration", "0.5s"]
