@@ -63,7 +63,7 @@ def main() -> None:
         parts = [(of_preset("silicon_in_air"), WATER), (files.of_image(image), IMAGE),
                  (files.of_fit(curve, "your curve", 2e-6), CURVE)]  # fmt: skip
         film.write(parts, Path(__file__).with_name("live.gif"), lambda share: print(f"{100 * share:.0f} %", end="\r"))
-    film.write([(of_preset("silicone_rubber"), [*WATER[:1], (2.0, {"do": "press", "on": True})])],
+    film.write([(of_preset("silicone_rubber"), [(1.5, {}), (2.0, {"do": "press", "on": True})])],
                Path(__file__).with_name("live.png"), lambda share: None)  # fmt: skip
 
 
