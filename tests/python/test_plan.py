@@ -146,8 +146,7 @@ def test_plan_without_adhesion_is_hertz() -> None:
     scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0})
     plan = scene.plan()
     assert plan.pull_off_force == 0.0
-    delta = np.array([0.5e-9, 1e-9])
-    modulus = 135e9 / (2 * (1 - 0.35**2))
+    delta, modulus = np.array([0.5e-9, 1e-9]), 135e9 / (2 * (1 - 0.35**2))
     np.testing.assert_allclose(plan.force(-delta), 4 / 3 * modulus * math.sqrt(20e-9) * delta**1.5, rtol=1e-13)
     np.testing.assert_array_equal(plan.force([0.0, 1e-9]), 0.0)
     assert str(plan).splitlines()[0] == "contact: Hertz, no adhesion"

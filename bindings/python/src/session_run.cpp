@@ -3,10 +3,9 @@
 #include "frames.h"
 #include "session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-
-#include <algorithm>
 
 // A column of numbers: where it lies in a record, and for vectors along which axis.
 struct Column {
