@@ -328,3 +328,12 @@ def test_no_pictures(tmp_path: Path) -> None:
         main(["touch", "--surface", "flat", "--duration", "0.5s", "--no-pictures", "--out", str(tmp_path / "out")]) == 0
     )
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"recording.mcap", "summary.json"}
+
+
+def test_a_limit_below_the_noise_of_the_lever_asks_for_no_longer_touch() -> None:
+    facts = {"reasons": ["force limit"], "duration_s": 125.0}
+    assert told.untouched(facts) == [
+        "a softer lever or a higher force limit: the sensor read more than the limit, and nothing was touched"
+    ]
+    assert told.untouched(facts | {"reasons": ["invalid sample"]}) == []
+    assert told.untouched(facts | {"reasons": []}) == ["a longer --duration than 125 s: nothing was touched"]

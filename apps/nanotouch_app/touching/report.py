@@ -174,9 +174,18 @@ def _next(session: nt.Session, facts: dict[str, Any], args: argparse.Namespace) 
     same = _same(args)
     mode, does = NEXT[session.mode]
     own = "" if session.mode == "point" else f" --mode {session.mode}"
-    lines = [] if facts["touched"] else [f"a longer --duration than {facts['duration_s']:.3g} s: nothing was touched"]
+    lines = [] if facts["touched"] else untouched(facts)
     lines.append(f"{same} --mode {mode}    {does}")
     return lines if args.verbose else [*lines, f"{same}{own} --verbose    models, error bounds and limits in full"]
+
+
+def untouched(facts: dict[str, Any]) -> list[str]:
+    """What helps where nothing was touched."""
+    if "force limit" in facts["reasons"]:
+        return ["a softer lever or a higher force limit: the sensor read more than the limit, and nothing was touched"]
+    if facts["reasons"]:
+        return []
+    return [f"a longer --duration than {facts['duration_s']:.3g} s: nothing was touched"]
 
 
 def _same(args: argparse.Namespace) -> str:
