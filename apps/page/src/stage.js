@@ -289,8 +289,6 @@ export class Stage {
     this.traceData.modified();
   }
 
-  forgetTrace() { this.traceData?.initialize(); }
-
   // --- the camera ---
 
   camera(view, at) {
