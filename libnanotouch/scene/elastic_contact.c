@@ -201,10 +201,10 @@ double nt_plan_doubt_share(nt_plan *plan, double of_table, double error)
         return 0.0;
     const double from_jump = fmax(1.0 - plan->elastic_number / NT_ELASTIC_JUMP, SAFE);
     plan->deformation.doubt = OF_TABLE / sqrt(from_jump) * of_table * nt_plan_force_scale(plan, 0.0) / pull;
-    if (!plan->visits_contact) {
-        plan->deformation.doubt += nt_elastic_more_of_w(plan); /* as rigid bodies have it */
+    if (plan->deformation.touch > plan->capture_gap * (1.0 + 1e-9)) /* w as rigid bodies have it: laws.c */
+        plan->deformation.doubt += nt_elastic_more_of_w(plan);
+    if (!plan->visits_contact)
         return 0.0;
-    }
     const doubt of = doubt_of(plan, 0.0, plan->deformation.doubt);
     const double fold = shift_by(plan, 0.0, plan->deformation.doubt),
                  farthest = FARTHEST_DOUBT * fabs(plan->release_gap);

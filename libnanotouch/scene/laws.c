@@ -73,7 +73,8 @@ static double share_of(const nt_plan *plan, int term)
 double nt_plan_tail_share(const nt_plan *plan)
 {
     double share = 0.0;
-    const int is_told = plan->visits_contact || plan->deformation.jumps; /* else a table ends before contact */
+    /* a table that ends farther out, at the min gap of the range, does not know it */
+    const int is_told = plan->deformation.jumps || plan->deformation.touch <= plan->capture_gap * (1.0 + 1e-9);
     if (plan->deformation.count > 0 && is_told)
         return nt_plan_deform_share(plan);
     for (int term = 0; term < NT_PLAN_TERMS && plan->source != NT_ADHESION_NONE; ++term)

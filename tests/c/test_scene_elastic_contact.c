@@ -117,6 +117,27 @@ static void folds_agree_that_are_not_visited(void **state)
     }
 }
 
+/* The same under a bridge that holds the tip farther out than adhesion reaches: the force there. */
+static void bridges_agree_that_hold_farther_out(void **state)
+{
+    (void)state;
+    const double demands[] = {0.065, 1e-6};
+    nt_scene scene = dry(4.7512e-9, 1.3533e10, 0.02239, 1.604e-19);
+    scene.medium.relative_humidity = 0.8565;
+    scene.medium.film_thickness = nt_scene_defaults().medium.film_thickness;
+    scene.range.maximum_load = 7.79e-8;
+    scene.range.minimum_gap = 8.06e-10;
+    for (int i = 0; i < 2; ++i)
+        make(&plans[i], &scene, NT_QUANTITY_FORCE, demands[i]);
+    for (double gap = scene.range.minimum_gap; gap < 3e-9; gap *= 1.2) {
+        const double one = value_at(&plans[0], gap), other = value_at(&plans[1], gap);
+        const double size = larger(fabs(one), fabs(other));
+        const double allowed = plans[0].bound.force_error * larger(size, plans[0].scale) +
+                               plans[1].bound.force_error * larger(size, plans[1].scale);
+        assert_true(fabs(one - other) <= allowed);
+    }
+}
+
 /* A potential around a dry contact whose tail jumps: contact and laws are solved together, which the sum, rough as it
  * is, and finer demands agree with. All but the first were refused. */
 static void a_dry_contact_is_solved_with_what_is_around_it(void **state)
@@ -137,9 +158,9 @@ static void a_dry_contact_is_solved_with_what_is_around_it(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(forces_agree_beside_the_fold),
-                                       cmocka_unit_test(radii_agree_where_contact_ends),
-                                       cmocka_unit_test(folds_agree_that_are_not_visited),
-                                       cmocka_unit_test(a_dry_contact_is_solved_with_what_is_around_it)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(forces_agree_beside_the_fold), cmocka_unit_test(radii_agree_where_contact_ends),
+        cmocka_unit_test(folds_agree_that_are_not_visited), cmocka_unit_test(bridges_agree_that_hold_farther_out),
+        cmocka_unit_test(a_dry_contact_is_solved_with_what_is_around_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
