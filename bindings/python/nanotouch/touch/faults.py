@@ -8,8 +8,7 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple, Self
 
-from nanotouch import _core
-from nanotouch._arrays import as_number
+from nanotouch import _arrays, _core
 from nanotouch.errors import InvalidValue
 
 CHANNELS: tuple[str, ...] = _core.fault_channels
@@ -107,12 +106,12 @@ class Faults:
             channel = kind.channels[0]
         if channel not in kind.channels:
             raise InvalidValue(f"fault {name!r} on channel {channel!r}: valid are {', '.join(kind.channels)}")
-        if at is not None and not 0.0 <= as_number(f"fault {name!r}: at", at, "s") < math.inf:
+        if at is not None and not 0.0 <= _arrays.as_number(f"fault {name!r}: at", at, "s") < math.inf:
             raise InvalidValue(f"fault {name!r}: at = {at} s: it must be a time of 0 s or more, or None")
-        if not as_number(f"fault {name!r}: duration", duration, "s") > 0.0:
+        if not _arrays.as_number(f"fault {name!r}: duration", duration, "s") > 0.0:
             raise InvalidValue(f"fault {name!r}: duration = {duration} s: it must be above 0 s")
         value = kind.value if value is None else value
-        if not kind.minimum <= as_number(f"fault {name!r}: value", value, kind.unit) <= kind.maximum:
+        if not kind.minimum <= _arrays.as_number(f"fault {name!r}: value", value, kind.unit) <= kind.maximum:
             raise InvalidValue(
                 f"fault {name!r}: value = {value:g} {kind.unit}: valid is {kind.minimum:g} .. {kind.maximum:g}"
             )

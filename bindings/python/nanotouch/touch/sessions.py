@@ -12,8 +12,7 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nanotouch import _core
-from nanotouch._arrays import refuse_dressed
+from nanotouch import _arrays, _core
 from nanotouch.errors import InvalidValue, require
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.scene.surface import Surface
@@ -194,7 +193,7 @@ def _values(name: str, values: ArrayLike, scene: Scene, rig: Rig) -> list[Any]:
             f"vary: {name!r} is no field of a scene, nor, behind 'rig.', of a rig; they are named as in "
             "scene['tip.radius'], rig['probe.spring_constant']"
         )
-    refuse_dressed(values, f"vary[{name!r}]")
+    _arrays.refuse_dressed(values, f"vary[{name!r}]")
     found = np.asarray(values)
     if found.ndim != 1 or found.size == 0:
         raise InvalidValue(f"vary[{name!r}]: expected one value for each session, not {values!r}")
