@@ -113,9 +113,10 @@ def _names(module: ModuleType) -> list[str]:
 
 
 def _is_of(value: object, module: str) -> bool:
-    """Whether the module brings this itself; what it only imports from a sibling is listed there."""
+    """Whether the module brings this itself; what it only imports from a sibling is listed there, helpers nowhere."""
     home = getattr(value, "__module__", None) or ""
-    return home == module or home.startswith((f"{module}.", "nanotouch._"))
+    ours = (f"{module}.", "nanotouch._" if inspect.isclass(value) else "nanotouch._core")
+    return home == module or home.startswith(ours)
 
 
 def python_listing() -> str:
