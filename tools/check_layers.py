@@ -45,23 +45,18 @@ USES = {
     "testing": "core control session",
 }
 
-# The layer that each public header belongs to, where it is not named after it (contact.h, contact_equilibrium.h).
+# The layer that each public or internal header belongs to, where it is not named after it (contact_equilibrium.h).
 HEADERS = {
     **dict.fromkeys(["status", "types", "material", "rig", "field", "version", "random"], "core"),
-    **dict.fromkeys(["geometry", "maugis_bank", "maugis_table"], "contact"),
-    **dict.fromkeys(["guarantee", "margins", "motor_bound", "passivity", "preflight", "scaling", "servo"], "control"),
-    **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
-    **dict.fromkeys(["plan", "interaction", "terms", "force_table"], "scene"),
-    **dict.fromkeys(["balance", "flow", "steady", "tapping"], "scan"),
-    **dict.fromkeys(["particle", "particles", "pushed", "rod"], "manipulation"),
-    "dents": "plasticity",
-    **dict.fromkeys(["viscoelastic", "viscoelastic_loop"], "rheology"),
-    "terrain": "session",
+    **dict.fromkeys(["geometry", "maugis"], "contact"),
+    "corrugation": "friction",
+    **dict.fromkeys(["margins", "settings", "touch"], "control"),
+    **dict.fromkeys(["plan", "interaction", "force_table"], "scene"),
+    **dict.fromkeys(["balance", "steady", "tapping"], "scan"),
     "sim": "hal/sim",
-    "faults": "hal/sim",
-    **dict.fromkeys(["commands", "frames", "hazard", "observer"], "session"),
-    **dict.fromkeys(["chips", "converters", "hal_iio"], "hal/chips"),
-    **dict.fromkeys(["hal_linux", "hal_spi", "realtime"], "hal/linux"),
+    **dict.fromkeys(["frames", "hazard", "observer", "terrain"], "session"),
+    **dict.fromkeys(["converters", "hal_iio"], "hal/chips"),
+    "hal_linux": "hal/linux",
     **dict.fromkeys(["hal_replay", "mailbox", "timing"], "hal"),
 }
 
@@ -99,13 +94,13 @@ INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 def layer_of_file(path: Path) -> str:
     """Return the layer that a file of the library belongs to."""
     relative = path.relative_to(LIBRARY)
-    if relative.parts[0] == "include":
+    if relative.parts[0] in ("include", "internal"):
         return layer_of_header(path.stem)
     return relative.parent.as_posix()
 
 
 def layer_of_header(stem: str) -> str:
-    """Return the layer of a public header; "" for one that this script does not know."""
+    """Return the layer of a public or internal header; "" for one that this script does not know."""
     prefix = stem.split("_")[0]
     return HEADERS.get(stem, prefix if prefix in USES else "")
 
@@ -129,7 +124,7 @@ def check_own_include(path: Path, name: str) -> str:
     """Return what is wrong with an include of one of our headers, or ""."""
     layer = layer_of_file(path)
     beside = (path.parent / name).resolve()
-    if name.startswith("nanotouch/"):
+    if name.startswith(("nanotouch/", "internal/")):
         used = layer_of_header(Path(name).stem)
         if not used:
             return f'"{name}" has no layer in tools/check_layers.py'
@@ -165,13 +160,12 @@ def check_sources() -> Iterator[str]:
 
 def check_users() -> Iterator[str]:
     """Yield the offences of bindings and apps: they include public headers, those that tools/single.py writes and their
-    own, nothing inside."""
-    for folder in ("bindings", "apps"):
+    own; the bindings, which are built from the same sources, internal headers, too; nothing else inside."""
+    for folder, inside in (("bindings", "internal/"), ("apps", "nanotouch/")):
         for path in sorted(p for p in (ROOT / folder).rglob("*") if p.suffix in {".c", ".cpp", ".h", ".hpp"}):
             for number, mark, name in includes(path):
-                own = (
-                    mark == "<" or name.startswith(("nanotouch/", "nanotouch_single")) or (path.parent / name).exists()
-                )
+                public = name.startswith(("nanotouch/", "nanotouch_single", inside))
+                own = mark == "<" or public or (path.parent / name).exists()
                 if not own:
                     yield f'{path.relative_to(ROOT)}:{number}: "{name}" is not a public header'
 

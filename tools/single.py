@@ -19,17 +19,9 @@ from pathlib import Path
 LIBRARY = Path(__file__).parent.parent / "libnanotouch"
 PUBLIC = LIBRARY / "include/nanotouch"
 HEADERS = [
-    "status",
-    "types",
-    "rig",
-    "settings",
-    "scaling",
-    "advanced/passivity",
-    "advanced/stage_loop",
-    "servo",
-    "supervisor",
-    "touch",
-    "advanced/force_table",
+    *(PUBLIC / f"{name}.h" for name in ("types", "rig", "settings", "control", "advanced/control", "touch")),
+    PUBLIC / "advanced/force_table.h",
+    LIBRARY / "internal/control.h",
 ]
 PRIVATE = ["follow", "lift", "modes", "motor", "observe", "sideways", "stuck"]
 SOURCES = [
@@ -219,7 +211,7 @@ def declarations() -> list[str]:
     sources = "\n".join(body_of(LIBRARY / f"{name}.c") for name in SOURCES)
     private = "\n".join((LIBRARY / f"control/{name}.h").read_text() for name in PRIVATE)
     defined = set(re.findall(r"^[\w ]+?\*?(nt_\w+)\([^;]*?\)\n\{", sources, re.MULTILINE))
-    every = [status_enum(), *(item for name in HEADERS[1:] for item in items((PUBLIC / f"{name}.h").read_text()))]
+    every = [status_enum(), *(item for header in HEADERS for item in items(header.read_text()))]
     named = [(name_of(item), item) for item in every]
     used = set(re.findall(r"\w+", sources + private))
     while True:

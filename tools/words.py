@@ -63,10 +63,10 @@ def files() -> list[tuple[str, str]]:
 
 
 def c_names() -> list[tuple[str, str]]:
-    """Functions, types and constants of the public headers."""
+    """Functions, types and constants of the public and internal headers."""
     found = set()
     for path in tracked(".h"):
-        if path.is_relative_to("libnanotouch/include"):
+        if path.parts[:2] in (("libnanotouch", "include"), ("libnanotouch", "internal")):
             text = re.sub(r"/\*.*?\*/", "", (ROOT / path).read_text(encoding="utf-8"), flags=re.DOTALL)
             found |= {(name, path.as_posix()) for name in re.findall(r"\b(?:nt_|NT_)\w+", text)}
     return sorted(dict(sorted(found)).items())

@@ -4,9 +4,11 @@
 #ifndef APPS_MCU_TOUCH_H
 #define APPS_MCU_TOUCH_H
 
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/converters.h"
-#include "nanotouch/control.h"
 #include "nanotouch/hal.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 /* What the board gives: its SPI, its clock, and the end of a period. */
 typedef struct board {

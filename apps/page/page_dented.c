@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A sample that keeps dents, as it is drawn (page.h): its law where the tip is, the section through the contact, and
  * the surface with what the tip has left and would leave if it let go now. The shapes are those of
- * nanotouch_app/live/dented.py; forces and dents are the library's (nanotouch/advanced/dents.h), which follows the
+ * nanotouch_app/live/dented.py; forces and dents are the library's (nanotouch/advanced/plasticity.h), which follows the
  * updates here as it follows the ticks in the session. */
 #include <math.h>
 #include <stdlib.h>

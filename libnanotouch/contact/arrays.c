@@ -10,6 +10,7 @@
 #include "contact/block.h"
 #include "core/strided.h"
 #include "core/variants.h"
+#include "internal/contact.h"
 
 /* Hertz' force less an adhesion, contiguous; force may be in. Returns 0 where some indentation is not finite: its
  * difference from itself is NaN, and so is its force. */

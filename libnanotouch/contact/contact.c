@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What every contact law takes: its parameters, their defaults, one table of fields, the check. */
 #include "nanotouch/contact.h"
+#include "internal/field.h"
 
 #include <stddef.h>
 

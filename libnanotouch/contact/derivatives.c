@@ -11,7 +11,8 @@
  * On the contact branch (maugis/branch.c) dP/dlambda follows from (Griffith), whose derivative by b is D:
  *     b_lambda = -b (g1 b/2 + 8/3 lambda g2)/D          dP/dlambda = P_lambda - k d_lambda (reduced k)       (branch)
  */
-#include "nanotouch/advanced/contact_derivatives.h"
+#include "internal/contact.h"
+#include "internal/contact_derivatives.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -2,6 +2,7 @@
  * Derjaguin, Muller, Toporov 1975: Hertz' profile under a constant attraction 2 pi R w from outside the contact (paper,
  * Eq. 9). The limit lambda -> 0 of Maugis-Dugdale: of a(F) to first order in lambda, but of F(delta) only as
  * sqrt(lambda), because the range of the attraction shifts the indentation. */
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "core/same_bits.h"
+#include "internal/contact.h"
 
 nt_law_value nt_hertz_eval(const nt_contact *contact, double indentation)
 {

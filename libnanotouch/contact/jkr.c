@@ -10,6 +10,7 @@
  *
  * exactly, so that Z = sqrt(d - d_f) is found from v without cancellation and v from Z by Newton's method, on the
  * stable branch (v > 0) and on the unstable one (-s_f < v < 0) alike. */
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 
 #include <float.h>

@@ -16,6 +16,8 @@
 #include "contact/maugis/apart.h"
 #include "contact/maugis/solve.h"
 #include "core/roots.h"
+#include "internal/contact.h"
+#include "internal/contact_equilibrium.h"
 #include "nanotouch/advanced/contact_equilibrium.h"
 
 /* G = stage d + load P. */

@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "contact/reduced.h"
+#include "internal/contact.h"
 
 const char *nt_model_name(nt_model model)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to the library: what maugis_bank.h does not promise. */
+ * Private to the library: what the public header does not have. */
 #ifndef NANOTOUCH_CONTACT_MAUGIS_BANK_PRIVATE_H
 #define NANOTOUCH_CONTACT_MAUGIS_BANK_PRIVATE_H
 
-#include "nanotouch/advanced/maugis_bank.h"
+#include "nanotouch/advanced/maugis.h"
 
 /* Reduced {U, F, k, a} at a lambda and reduced indentation. */
 nt_status nt_maugis_bank_eval(const nt_maugis_bank *bank, double lambda, double d, nt_branch branch,

@@ -10,6 +10,7 @@
 #include "contact/block.h"
 #include "core/roots.h"
 #include "core/strided.h"
+#include "internal/contact_equilibrium.h"
 #include "nanotouch/advanced/contact_equilibrium.h"
 
 enum { CELLS = 127, NODES = CELLS + 1, STEPS = 40 };

@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 #include "core/roots.h"
+#include "internal/geometry.h"
 #include "nanotouch/advanced/geometry.h"
 
 #define SMALLEST 1e-100 /* [m]; below it the terms of (balance) lose digits to denormals */

@@ -3,7 +3,8 @@
 #ifndef NANOTOUCH_CONTROL_BOUND_H
 #define NANOTOUCH_CONTROL_BOUND_H
 
-#include "nanotouch/guarantee.h"
+#include "internal/margins.h"
+#include "nanotouch/margins.h"
 
 /* As nt_guarantee_compute, where the surface rises by no more than this, wherever the tip is led; infinite where that
  * is not known [m]. */

@@ -20,9 +20,9 @@
 #include "control/sampled.h"
 #include "core/clamp.h"
 #include "core/same_bits.h"
+#include "nanotouch/control.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
-#include "nanotouch/servo.h"
 
 #define PEAK_TO_PEAK 6.0 /* standard deviations */
 #define LIMIT_CYCLE 2.0  /* limit cycles of steps stay within this times white errors, or the largest answer */

@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_CONTROL_FOLLOW_H
 #define NANOTOUCH_CONTROL_FOLLOW_H
 
-#include "nanotouch/supervisor.h"
+#include "nanotouch/control.h"
 
 /* Where the stage should be by now, told to be at the reference [m], whatever it shows. */
 void nt_follow_expect(const nt_supervisor *supervisor, nt_supervisor_state *state, nt_sum reference);

@@ -2,7 +2,7 @@
  * How far force and indentation can go past their limits (docs/safety.md). The sample that first shows too much is at
  * most one period old; the command that answers it is held, delayed, and followed by the stage: all that is the loop's
  * delay D of rule R1. Until then the tip goes on as fast as stage and surface may move, against at most the lever and
- * the stiffest contact in series, as stiff as it is on the mean of that way (hazard.h). */
+ * the stiffest contact in series, as stiff as it is on the mean of that way (nt_hazard). */
 #include <math.h>
 
 #include "control/bound.h"
@@ -10,11 +10,11 @@
 #include "control/servo.h"
 #include "core/rig.h"
 #include "core/same_bits.h"
-#include "nanotouch/guarantee.h"
+#include "internal/control.h"
+#include "internal/margins.h"
+#include "nanotouch/control.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
-#include "nanotouch/servo.h"
-#include "nanotouch/supervisor.h"
 
 #define SIGMAS 6.0
 #define INTERVALS 400

@@ -11,6 +11,7 @@
 
 #include "control/sampled.h"
 #include "core/same_bits.h"
+#include "internal/margins.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
 

@@ -2,7 +2,8 @@
  * The three laws (paper, Eq. 16-17). */
 #include <stddef.h>
 
-#include "nanotouch/servo.h"
+#include "internal/control.h"
+#include "nanotouch/control.h"
 
 /* tau_m = -alpha_f f_s - K_f (alpha_f f_s - f_m). At rest f_m = alpha_f f_s for any K_f (erratum E16). */
 static double reflect(const nt_gains *gains, const nt_signals *signals, double operator_force)

@@ -3,6 +3,9 @@
  *
  * Loop gain kappa C(s)/(s (m s + b)), kappa = (1 + K_f) alpha_f alpha_p k_eff. C: two sampled hops (stage command and
  * motor force), each half a period of hold and a dead time, and the stage. */
+#include "internal/margins.h"
+#include "internal/control.h"
+#include "internal/rig.h"
 #include "nanotouch/margins.h"
 
 #include <math.h>
@@ -12,8 +15,8 @@
 #include "control/sampled.h"
 #include "core/rig.h"
 #include "core/same_bits.h"
+#include "nanotouch/control.h"
 #include "nanotouch/material.h"
-#include "nanotouch/servo.h"
 
 /* The stage's share of D = sup -Im C(jw)/w. At w = 0 it is the delay of notch and stage, 2 zeta/wn and, where samples
  * are few, what the sampled notch adds; below zeta = 1/sqrt(2) the resonance has more, without a notch nearly Q/wn. */

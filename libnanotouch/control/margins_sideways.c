@@ -12,9 +12,11 @@
 #include "control/margins.h"
 #include "control/sampled.h"
 #include "core/same_bits.h"
+#include "internal/margins.h"
+#include "internal/rig.h"
+#include "nanotouch/control.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
-#include "nanotouch/servo.h"
 
 enum { SLOPES = 4, CONTACTS = 4 };
 #define ON_THE_AXIS 1e-6 /* of an eigenvalue: less is no imaginary part */

@@ -7,6 +7,7 @@
 #include "control/motor.h"
 #include "control/observe.h"
 #include "core/clamp.h"
+#include "internal/control.h"
 
 #define FOUND_SHARE 0.9 /* of the set-point: the surface is found */
 

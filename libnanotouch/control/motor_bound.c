@@ -2,7 +2,8 @@
  * What is promised to the hand. A force that falls in a line from F gives a hand that moves at v the energy
  * |F| v T/2 within T; a handle of mass m that is let go gains the impulse J = |F| T/2 besides, and is given
  * J v + J^2/(2 m) in all. */
-#include "nanotouch/advanced/motor_bound.h"
+#include "internal/control.h"
+#include "nanotouch/advanced/control.h"
 
 #include <math.h>
 

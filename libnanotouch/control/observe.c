@@ -9,6 +9,7 @@
 
 #include "control/sideways.h"
 #include "core/clamp.h"
+#include "internal/control.h"
 
 /* A single reading that nothing real can have made gives way to the one between it and the last two; a true jump shows
  * one period late. */

@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 #include "control/known_law.h"
-#include "nanotouch/servo.h"
+#include "nanotouch/control.h"
 
 #define LARGEST_FEEDFORWARD 0.8 /* these three as in the table of gains */
 #define LEAST_ALPHA_F 1e-3      /* of a law that reflects nothing */

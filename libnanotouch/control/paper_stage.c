@@ -6,8 +6,8 @@
 
 #include "core/clamp.h"
 #include "core/lti.h"
+#include "nanotouch/control.h"
 #include "nanotouch/material.h"
-#include "nanotouch/servo.h"
 
 enum { MOST_DELAY = 1000, LEAST_TICKS = 4000, TICKS_PER_DELAY = 200 };
 #define LARGEST_GAIN 1e4

@@ -11,7 +11,8 @@
 #include <math.h>
 
 #include "core/clamp.h"
-#include "nanotouch/advanced/passivity.h"
+#include "internal/control.h"
+#include "nanotouch/advanced/control.h"
 
 #define BACK_OFF 0.8
 #define LEAST_GAIN 0.05  /* below it damping is added */

@@ -3,7 +3,8 @@
 #include <math.h>
 
 #include "core/clamp.h"
-#include "nanotouch/advanced/passivity.h"
+#include "internal/control.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/material.h"
 
 #define DUE_SHARE 0.2         /* of the damping; at the margin of 1.5 at which a loop may be armed a third is left */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Before arming: two halves of a tare, whose means give bias and drift; then the stage draws back, is read, and comes
  * back. Drawing back is the safe direction: it needs neither model nor sensor. */
-#include "nanotouch/advanced/preflight.h"
+#include "internal/rig.h"
+#include "nanotouch/advanced/control.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to the library: what preflight.h does not promise. */
+ * Private to the library: what the public header does not have. */
 #ifndef NANOTOUCH_CONTROL_PREFLIGHT_PRIVATE_H
 #define NANOTOUCH_CONTROL_PREFLIGHT_PRIVATE_H
 
-#include "nanotouch/advanced/preflight.h"
+#include "nanotouch/advanced/control.h"
 
 /* What preflight does and allows on this rig, from its noise, ranges and rate. */
 nt_preflight nt_preflight_make(const nt_rig *rig, const nt_settings *settings);

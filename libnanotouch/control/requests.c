@@ -4,6 +4,7 @@
 
 #include "core/clamp.h"
 #include "core/same_bits.h"
+#include "internal/control.h"
 #include "nanotouch/touch.h"
 
 nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration)

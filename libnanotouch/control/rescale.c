@@ -4,7 +4,8 @@
  * port; gamma' S would be made by the computer. So gamma rises only as fast as a tank pays gamma' S, and the tank holds
  * what the operator has lost in the master's damping. In free air S = 0 and everything is allowed. */
 #include "core/clamp.h"
-#include "nanotouch/scaling.h"
+#include "internal/control.h"
+#include "nanotouch/control.h"
 
 nt_rescale_state nt_rescale_start(const nt_rescale *rescale, const nt_scaling *scaling)
 {

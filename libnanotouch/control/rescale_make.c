@@ -4,8 +4,8 @@
 
 #include "core/clamp.h"
 #include "core/same_bits.h"
-#include "nanotouch/scaling.h"
-#include "nanotouch/servo.h"
+#include "internal/control.h"
+#include "nanotouch/control.h"
 
 #define TANK 0.05      /* share of the gauge's range over the master's travel that the tank can hold */
 #define FREE_SIGMA 6.0 /* of the force noise: below it is free air */

@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "internal/control.h"
 #include "nanotouch/material.h"
 
 nt_sampled nt_sampled_make(double mass, double damping, double stiffness, double period, double dead_time)

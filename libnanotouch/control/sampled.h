@@ -6,7 +6,7 @@
 
 #include "core/complex_number.h"
 #include "core/lti.h"
-#include "nanotouch/advanced/stage_loop.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/settings.h"
 
 /* M x'' + B x' + K x = u behind a hold and a dead time. States (x, v T), so that the entries are of like size. */

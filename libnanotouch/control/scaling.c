@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Scaling factors between hand and tip (paper, Sec. IV-C). */
-#include "nanotouch/scaling.h"
 #include "core/rig.h"
+#include "nanotouch/control.h"
 
 nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double attraction)
 {

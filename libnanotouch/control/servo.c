@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What the three laws mean for the stability rules. */
-#include "nanotouch/servo.h"
+#include "internal/control.h"
+#include "internal/rig.h"
+#include "nanotouch/control.h"
 
 #include <math.h>
 
 #include "control/servo.h"
 #include "core/clamp.h"
-#include "nanotouch/advanced/stage_loop.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/material.h"
 
 /* alpha_f alpha_p k_eff: the contact, through the lever, at the operator's scale [N/m]. */

@@ -4,8 +4,11 @@
 #include <stddef.h>
 
 #include "core/rig.h"
+#include "internal/control.h"
+#include "internal/field.h"
+#include "internal/rig.h"
+#include "nanotouch/control.h"
 #include "nanotouch/material.h"
-#include "nanotouch/scaling.h"
 #include "nanotouch/settings.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_settings, path, __VA_ARGS__)

@@ -7,6 +7,7 @@
 #include "control/motor.h"
 #include "core/clamp.h"
 #include "core/same_bits.h"
+#include "internal/control.h"
 
 #define ROUNDING (1.0 + 1e-9) /* of a way at the limit */
 

@@ -2,7 +2,8 @@
  * Notch and gain of the stage's loop. */
 #include <math.h>
 
-#include "nanotouch/advanced/stage_loop.h"
+#include "internal/control.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/material.h"
 
 /* z^2 - sum z + product: the poles of s^2 + 2 zeta wn s + wn^2 under a hold, z = exp(s T); angle = wn T. */

@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_CONTROL_STUCK_H
 #define NANOTOUCH_CONTROL_STUCK_H
 
-#include "nanotouch/supervisor.h"
+#include "nanotouch/control.h"
 
 /* Of a valid reading at a place of the stage. NT_HOLD for a sensor that seems dead, NT_LATCHED where a step away has
  * not helped. shows_none: the reading is one that shows no noise anyway. */

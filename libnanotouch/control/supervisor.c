@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What happens when something is wrong: RUN, HOLD, RETRACT, LATCHED as a pure function of sample, command and limits
  * (docs/safety.md holds the table). Jump-in and pull-off are the physics of the scene and trip nothing. */
-#include "nanotouch/supervisor.h"
+#include "internal/control.h"
+#include "nanotouch/control.h"
 
 #include <math.h>
 

@@ -6,9 +6,9 @@
 #include "core/clamp.h"
 #include "core/rig.h"
 #include "core/same_bits.h"
+#include "internal/control.h"
+#include "nanotouch/control.h"
 #include "nanotouch/material.h"
-#include "nanotouch/servo.h"
-#include "nanotouch/supervisor.h"
 
 #define STUCK_STEPS 5.0         /* of the stage's read-out */
 #define LEAST_STAGE_STEP 0.1e-9 /* of a read-out without steps [m] */

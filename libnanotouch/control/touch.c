@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * One control period: supervisor, observation, mode and law, limits, stage loop. */
 #include "nanotouch/touch.h"
+#include "internal/control.h"
 
 #include <math.h>
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What a touch needs in each period, worked out once: checks, filters, thresholds. */
+#include "internal/control.h"
+#include "internal/rig.h"
 #include "nanotouch/touch.h"
 
 #include <math.h>
@@ -10,7 +12,7 @@
 #include "core/problem.h"
 #include "core/rig.h"
 #include "core/same_bits.h"
-#include "nanotouch/advanced/motor_bound.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/material.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Tables of fields: see field.h. */
+#include "internal/field.h"
 #include "nanotouch/advanced/field.h"
 
 #include <math.h>

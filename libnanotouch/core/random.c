@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * xoshiro256++ 1.0 (Blackman and Vigna, "Scrambled linear pseudorandom number generators", 2019), seeded by splitmix64
  * (Steele, Lea and Flood 2014) as its authors advise: no seed gives the forbidden all-zero state. */
+#include "internal/random.h"
 #include "core/noise.h"
 
 #include <math.h>

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The rig of the paper (Sec. II, IV and VI): default values, valid ranges, derived ranges of the probe. */
+#include "internal/rig.h"
+#include "internal/field.h"
 #include "nanotouch/rig.h"
 
 #include <math.h>

@@ -10,6 +10,7 @@
 #include "curves/line.h"
 #include "curves/parts.h"
 #include "curves/robust.h"
+#include "internal/curves.h"
 
 static const double far_part = 0.5;   /* of the travel, taken for the first line */
 static const double margin = 0.05;    /* of the travel, kept between an event and the baseline that judges it */

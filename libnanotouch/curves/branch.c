@@ -9,6 +9,7 @@
 #include "curves/curves.h"
 #include "curves/parts.h"
 #include "curves/robust.h"
+#include "internal/curves.h"
 
 enum { NEIGHBOURS = 5 };
 static const double end_part = 0.1; /* of the travel, beyond which no baseline is left to judge a point by */

@@ -11,6 +11,7 @@
 
 #include "core/variants.h"
 #include "curves/robust.h"
+#include "internal/curves.h"
 
 enum {
     SPECTRUM_BLOCKS = 64,

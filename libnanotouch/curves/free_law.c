@@ -10,6 +10,7 @@
 
 #include "core/variants.h"
 #include "curves/robust.h"
+#include "internal/curves.h"
 
 enum { POLES = 10, LAWS = 4 };
 static const double price = 9.0;                     /* three standard deviations */

@@ -13,6 +13,7 @@
 #include "curves/line.h"
 #include "curves/parts.h"
 #include "curves/ruptures.h"
+#include "internal/curves.h"
 
 static const double deepest_of_many = 5.0; /* standard deviations that the lowest of many points may lie too low */
 static const double far_part = 0.5;        /* of the travel: a tail as long is judged by itself */

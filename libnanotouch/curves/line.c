@@ -6,6 +6,7 @@
 
 #include "core/variants.h"
 #include "curves/robust.h"
+#include "internal/curves.h"
 
 enum {
     ROUNDS = 10,  /* of Tukey's weights at most */

@@ -12,6 +12,7 @@
 #include "curves/ringing.h"
 #include "curves/robust.h"
 #include "curves/straight.h"
+#include "internal/curves.h"
 
 static const double largest_value = 1.0; /* m or N: beyond, the unit is surely not SI */
 static const double faint = 2.0;         /* times the visible force, below which a dip is hardly told from noise */

@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "core/same_bits.h"
+#include "internal/curves.h"
 
 enum { PARTS = 16, NEAR = 5 };
 static const double no_noise = 6.0; /* times the variance of a part's mean */

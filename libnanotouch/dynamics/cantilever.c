@@ -13,6 +13,7 @@
  * without a precursor in N or S can be stepped over; among oscillating forces (liquid layers) that happened in 5 of
  * 640 000 random moves of up to 2 nm at once. The walk ends in a minimum of
  * U + K (z_t - z_b)^2 / 2; with a tilt it is this K, not k_c / cos^2(alpha), that k_c zeta = F implies. */
+#include "internal/dynamics.h"
 #include "nanotouch/dynamics.h"
 
 #include <float.h>

@@ -16,6 +16,7 @@
 #include <stddef.h>
 
 #include "core/same_bits.h"
+#include "internal/random.h"
 #include "oscillator.h"
 
 #define CLOSE 1e-5 /* Newton steps below this many field lengths are exact to about its square */

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "dynamics/dynamics.h"
+#include "internal/random.h"
 #include "nanotouch/dynamics.h"
 
 void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target)

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "internal/random.h"
 #include "nanotouch/dynamics.h"
 
 static inline double nt_sensor_sense(const nt_sensor *sensor, double value, nt_noise *noise)

@@ -11,6 +11,7 @@
 
 #include "core/problem.h"
 #include "curve.hpp"
+#include "internal/fit.h"
 
 namespace nanotouch
 {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "internal/fit.h"
 #include "nanotouch/fit.h"
 
 namespace

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "core/problem.h"
+#include "internal/fit.h"
 #include "points.hpp"
 #include "power.hpp"
 #include "solving.hpp"

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "internal/fit.h"
 #include "nanotouch/fit.h"
 
 namespace

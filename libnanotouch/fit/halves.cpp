@@ -4,6 +4,7 @@
 // one step of Gauss and Newton, must ask for the same E* and contact point. What they differ by is the size of the
 // error.
 #include "halves.hpp"
+#include "internal/fit.h"
 
 #include <algorithm>
 #include <array>

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "internal/curves.h"
 #include "nanotouch/curves.h"
 
 namespace nanotouch

@@ -8,6 +8,8 @@
 
 #include "core/problem.h"
 #include "fit/models/row.h"
+#include "internal/field.h"
+#include "internal/fit.h"
 #include "nanotouch/advanced/field.h"
 
 namespace

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "nanotouch/fit_viscoelastic.h"
+#include "nanotouch/fit.h"
 
 namespace nanotouch
 {

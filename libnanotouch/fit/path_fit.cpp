@@ -7,6 +7,7 @@
 #include <new>
 
 #include "core/problem.h"
+#include "internal/curves.h"
 #include "nanotouch/curves.h"
 #include "path_fit.hpp"
 

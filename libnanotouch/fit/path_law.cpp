@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "internal/rheology.h"
 #include "path.hpp"
 
 namespace nanotouch

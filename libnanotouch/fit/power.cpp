@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "data.hpp"
+#include "internal/fit.h"
 #include "solve.hpp"
 
 namespace nanotouch

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "internal/fit.h"
 #include "nanotouch/fit.h"
 
 namespace nanotouch

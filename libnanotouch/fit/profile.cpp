@@ -9,6 +9,7 @@
 #include <new>
 #include <vector>
 
+#include "internal/fit.h"
 #include "model.hpp"
 #include "solving.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "data.hpp"
 #include "guess.hpp"
+#include "internal/fit.h"
 #include "linear.hpp"
 #include "nanotouch/material.h"
 #include "solve.hpp"

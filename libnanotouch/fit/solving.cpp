@@ -12,6 +12,8 @@
 #include "core/problem.h"
 #include "fit/models/row.h"
 #include "halves.hpp"
+#include "internal/curves.h"
+#include "internal/fit.h"
 #include "model.hpp"
 #include "power.hpp"
 #include "solve.hpp"

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "internal/fit.h"
 #include "model.hpp"
 #include "nanotouch/fit.h"
 

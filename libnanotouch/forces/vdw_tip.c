@@ -6,6 +6,8 @@
 
 #include "forces/forces.h"
 #include "forces/law.h"
+#include "internal/field.h"
+#include "internal/forces.h"
 #include "nanotouch/advanced/field.h"
 #include "nanotouch/forces.h"
 

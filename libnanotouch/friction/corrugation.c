@@ -10,6 +10,8 @@
 
 #include "core/problem.h"
 #include "core/roots.h"
+#include "internal/corrugation.h"
+#include "internal/field.h"
 #include "nanotouch/friction.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_corrugation, path, __VA_ARGS__)

@@ -9,6 +9,8 @@
 #include <stddef.h>
 
 #include "core/same_bits.h"
+#include "internal/field.h"
+#include "internal/friction.h"
 #include "nanotouch/friction.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_friction, path, __VA_ARGS__)

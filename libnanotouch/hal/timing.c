@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Histograms of durations, in buckets of constant relative width: below 32 ns one each, then 16 to an octave. */
-#include "nanotouch/advanced/timing.h"
+#include "internal/timing.h"
 #include "hal/timing.h"
+#include "nanotouch/advanced/timing.h"
 
 #include <math.h>
 #include <stddef.h>

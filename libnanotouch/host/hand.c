@@ -6,6 +6,7 @@
  * 1/alpha_p here. It gives way as an arm would where the force comes near the limit. */
 #include <math.h>
 
+#include "internal/host.h"
 #include "nanotouch/host.h"
 
 static const double PRESS = 0.5;     /* of the max load: the steady force */

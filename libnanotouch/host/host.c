@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "host/state.h"
+#include "internal/host.h"
+#include "internal/session.h"
 
 static const double MAX_SEED = 9007199254740992.0; /* whole numbers that a double holds */
 static const char *const STOPS = "The hand stops here: the force limit is near.";

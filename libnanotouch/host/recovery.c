@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The surface of a sample that relaxes, as a view draws it: pressed in by the tip, and still dented after it has gone.
  *
- * The host follows the contact by springs of its own (viscoelastic_loop.h), along the gaps that it sees. The surface of
+ * The host follows the contact by springs of its own (rheology.h), along the gaps that it sees. The surface of
  * the half-space goes with their displacement g(x), of the tip's and of those that recover (Popov, Hess 2015):
  * w(r) = 2/pi Int_0^r g(x)/sqrt(r^2 - x^2) dx. */
 #include <math.h>
 #include <string.h>
 
 #include "host/state.h"
+#include "internal/rheology.h"
 
 static const double PERIOD = 1e-3;  /* of the springs [s] */
 static const double TOLD = 0.05;    /* so often [s] */

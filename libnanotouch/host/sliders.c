@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "host/state.h"
+#include "internal/host.h"
 
 /* Where a slider ends, as factors of the value that it begins with; what is read only of one kind of adhesion. */
 typedef struct row {

@@ -7,7 +7,7 @@
 #include "host/text.h"
 #include "nanotouch/host.h"
 #include "nanotouch/plan.h"
-#include "nanotouch/viscoelastic_loop.h"
+#include "nanotouch/rheology.h"
 
 enum { NT_HOST_HISTORY = 64, NT_HOST_KEPT = 16, NT_HOST_NAME = 64, NT_HOST_MOVES = 64 };
 

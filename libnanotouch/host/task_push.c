@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Push particles to where they shall lie, by hand: one, five into a pattern, or a rod, each of whose ends shall lie in
- * a ring. The session lays and moves them, by the laws of particles.h and rod.h. */
+ * a ring. The session lays and moves them, by the laws of advanced/manipulation.h. */
 #include "host/task_push.h"
 
 #include <math.h>

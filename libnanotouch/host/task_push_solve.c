@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "host/task_push.h"
-#include "nanotouch/advanced/rod.h"
+#include "internal/manipulation.h"
+#include "nanotouch/advanced/manipulation.h"
 
 static const nt_trainer *trainer_of(const nt_operator *op)
 {

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "internal/manipulation.h"
 #include "manipulation/bristle.h"
 #include "manipulation/particles.h"
 #include "manipulation/set.h"

@@ -6,7 +6,7 @@
 #ifndef NANOTOUCH_MANIPULATION_BALANCE_H
 #define NANOTOUCH_MANIPULATION_BALANCE_H
 
-#include "nanotouch/advanced/particles.h"
+#include "nanotouch/advanced/manipulation.h"
 
 enum {
     FREEDOMS = 6, /* of a particle: displacement of its centre, and R times its turn [m] */

@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_MANIPULATION_BRISTLE_H
 #define NANOTOUCH_MANIPULATION_BRISTLE_H
 
-#include "nanotouch/advanced/particle.h"
+#include "nanotouch/advanced/manipulation.h"
 
 /* What the step costs, as a function of the stretch: k e^2/2 up to the limit, beyond it what is stored and what becomes
  * heat, L e - L^2/2k. Its gradient is the pull. */

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A particle as it is described, its contacts made ready, and the particle at rest: see particle.h. */
+ * A particle as it is described, its contacts made ready, and the particle at rest: see advanced/manipulation.h. */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "core/problem.h"
+#include "internal/field.h"
+#include "internal/manipulation.h"
 #include "manipulation/particle.h"
 #include "manipulation/set.h"
 #include "nanotouch/material.h"

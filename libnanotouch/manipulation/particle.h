@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to the library: what particle.h does not promise. */
+ * Private to the library: what the public header does not have. */
 #ifndef NANOTOUCH_MANIPULATION_PARTICLE_PRIVATE_H
 #define NANOTOUCH_MANIPULATION_PARTICLE_PRIVATE_H
 
-#include "nanotouch/advanced/particle.h"
+#include "nanotouch/advanced/manipulation.h"
 
 /* Along a path of `count` points; the state after each to states[i]. Stops at the first that is refused. */
 nt_status nt_particle_run_n(const nt_pushing *pushing, nt_particle_state *state, const double (*tips)[3],

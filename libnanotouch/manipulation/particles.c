@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A set of particles as it is described, its contacts made ready, and laid on the substrate: see particles.h. */
-#include "nanotouch/advanced/particles.h"
+ * A set of particles as it is described, its contacts made ready, and laid on the substrate: see
+ * advanced/manipulation.h. */
+#include "internal/contact.h"
+#include "internal/field.h"
+#include "internal/manipulation.h"
+#include "nanotouch/advanced/manipulation.h"
 
 #include <math.h>
 #include <stddef.h>

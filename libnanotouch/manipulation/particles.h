@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to the library: what particles.h does not promise. */
+ * Private to the library: what the public header does not have. */
 #ifndef NANOTOUCH_MANIPULATION_PARTICLES_PRIVATE_H
 #define NANOTOUCH_MANIPULATION_PARTICLES_PRIVATE_H
 
-#include "nanotouch/advanced/particles.h"
+#include "nanotouch/advanced/manipulation.h"
 
 /* NT_OK, or what nt_particle_check refuses of particle or between, or a lever outside 0 .. 1e9 N/m. */
 nt_status nt_particles_check(const nt_particles_setup *setup, nt_problem *problem);

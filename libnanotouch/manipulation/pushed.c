@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Spheres and rods behind one interface: see pushed.h. */
-#include "nanotouch/advanced/pushed.h"
+ * Spheres and rods behind one interface: see advanced/manipulation.h. */
+#include "internal/manipulation.h"
+#include "nanotouch/advanced/manipulation.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A rod that a tip pushes: see rod.h. What it is like, where it lies, and its way, step by step. */
-#include "nanotouch/advanced/rod.h"
+ * A rod that a tip pushes: see advanced/manipulation.h. What it is like, where it lies, and its way, step by step. */
+#include "internal/field.h"
+#include "internal/manipulation.h"
+#include "nanotouch/advanced/manipulation.h"
 
 #include <math.h>
 #include <stddef.h>

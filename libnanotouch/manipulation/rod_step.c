@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "internal/manipulation.h"
 #include "manipulation/balance.h"
 #include "manipulation/rod.h"
 

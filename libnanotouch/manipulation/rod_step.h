@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_MANIPULATION_ROD_STEP_H
 #define NANOTOUCH_MANIPULATION_ROD_STEP_H
 
-#include "nanotouch/advanced/rod.h"
+#include "nanotouch/advanced/manipulation.h"
 
 /* Tip and rod. Distances are those of the rod's axis from the cone whose points are a tip radius below the tip's
  * surface; rho is their distance seen from above, h the height of the axis over that cone's apex. */

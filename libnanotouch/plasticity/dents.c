@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Dents of a sample while it is touched: see dents.h.
+ * Dents of a sample while it is touched: see advanced/plasticity.h.
  *
  * With s the share that is ploughed a contact carries c = 1 - s/2 of what it would at rest, F = c F_0(delta). A way ds
  * of the tip takes ds/a of what is left, up to the share of the depth that is plastic. At a given load c F_0 = P: in
  * full plasticity F_0 = 2 P, a^2 = 2 P/(pi H), the groove of a ploughing tip. Stored energy and heat of the law at rest
  * count with c, so that a way in depth has stored + dissipated = work; as c falls, U falls at the same depth: heat. */
-#include "nanotouch/advanced/dents.h"
+#include "nanotouch/advanced/plasticity.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to the library: what dents.h does not promise. */
+ * Private to the library: what the public header does not have. */
 #ifndef NANOTOUCH_PLASTICITY_DENTS_PRIVATE_H
 #define NANOTOUCH_PLASTICITY_DENTS_PRIVATE_H
 
-#include "nanotouch/advanced/dents.h"
+#include "nanotouch/advanced/plasticity.h"
 
 /* How far the dents lower the apex of a tip at (x, y) before it touches, >= 0 [m]: 0 beside them, the residual depth in
  * the middle of one. The tip rests on the rim, or in the bottom of the paraboloid. */

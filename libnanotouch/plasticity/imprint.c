@@ -6,6 +6,8 @@
 
 #include "core/problem.h"
 #include "core/same_bits.h"
+#include "internal/field.h"
+#include "internal/plasticity.h"
 #include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/material.h"
 

@@ -13,6 +13,8 @@
 #include <stddef.h>
 
 #include "core/same_bits.h"
+#include "internal/field.h"
+#include "internal/plasticity.h"
 #include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/material.h"
 

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "internal/field.h"
+#include "internal/plasticity.h"
 #include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/material.h"
 

@@ -8,7 +8,8 @@
 
 #include "core/problem.h"
 #include "core/roots.h"
-#include "nanotouch/viscoelastic.h"
+#include "internal/field.h"
+#include "nanotouch/rheology.h"
 #include "rheology/crack.h"
 #include "rheology/run.h"
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "internal/rheology.h"
 #include "rheology/kernel.h"
 
 enum { TERMS = 15 }; /* of the series at x = 1, to the last bit */

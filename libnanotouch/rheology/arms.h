@@ -6,6 +6,7 @@
 #ifndef NANOTOUCH_RHEOLOGY_ARMS_H
 #define NANOTOUCH_RHEOLOGY_ARMS_H
 
+#include "internal/rheology.h"
 #include "nanotouch/rheology.h"
 
 enum {

@@ -4,6 +4,7 @@
 #ifndef NANOTOUCH_RHEOLOGY_KERNEL_H
 #define NANOTOUCH_RHEOLOGY_KERNEL_H
 
+#include "internal/rheology.h"
 #include "nanotouch/rheology.h"
 
 /* How a spectrum changes with a parameter p of its description. */

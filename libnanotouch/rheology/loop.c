@@ -10,7 +10,9 @@
 
 #include "core/problem.h"
 #include "core/variants.h"
-#include "nanotouch/viscoelastic_loop.h"
+#include "internal/field.h"
+#include "internal/rheology.h"
+#include "nanotouch/rheology.h"
 #include "rheology/loop.h"
 #include "rheology/springs.h"
 

@@ -4,7 +4,8 @@
 #ifndef NANOTOUCH_RHEOLOGY_LOOP_H
 #define NANOTOUCH_RHEOLOGY_LOOP_H
 
-#include "nanotouch/viscoelastic_loop.h"
+#include "internal/rheology.h"
+#include "nanotouch/rheology.h"
 
 /* nt_viscoelastic_bed_make with springs that are closer to each other near the apex, for forces that are small beside
  * the max one: at (i/count)^grading of the contact radius. */

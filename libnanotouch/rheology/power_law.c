@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "internal/rheology.h"
 #include "nanotouch/material.h"
 #include "rheology/kernel.h"
 

@@ -2,6 +2,7 @@
  * Paraboloid 4/3 sqrt(R) delta^(3/2), cone 2 tan(psi)/pi delta^2, punch 2 a delta, sphere by Sneddon (contact/shapes);
  * on a layer times a polynomial (contact/bonded_layer.h). */
 #include "rheology/profile.h"
+#include "internal/geometry.h"
 
 #include <math.h>
 #include <stddef.h>

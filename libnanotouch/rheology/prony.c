@@ -10,6 +10,7 @@
 
 #include "core/problem.h"
 #include "core/roots.h"
+#include "internal/rheology.h"
 
 nt_status nt_prony_check(const nt_rheology *rheology, int arms, nt_problem *problem)
 {

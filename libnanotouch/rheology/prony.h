@@ -3,6 +3,7 @@
 #ifndef NANOTOUCH_RHEOLOGY_PRONY_H
 #define NANOTOUCH_RHEOLOGY_PRONY_H
 
+#include "internal/rheology.h"
 #include "rheology/kernel.h"
 
 nt_status nt_prony_check(const nt_rheology *rheology, int arms, nt_problem *problem);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The description of a sample that relaxes: its fields, and the row of its kernel. */
+#include "internal/rheology.h"
+#include "internal/field.h"
 #include "nanotouch/rheology.h"
 
 #include <math.h>

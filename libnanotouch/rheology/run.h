@@ -8,7 +8,7 @@
 #ifndef NANOTOUCH_RHEOLOGY_RUN_H
 #define NANOTOUCH_RHEOLOGY_RUN_H
 
-#include "nanotouch/viscoelastic.h"
+#include "nanotouch/rheology.h"
 #include "rheology/arms.h"
 #include "rheology/profile.h"
 

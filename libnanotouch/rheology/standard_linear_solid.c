@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * E(t) = E_inf + E_1 exp(-t/tau_1) (Zener 1948): the Prony series of one arm, by the name that most papers give it. */
+#include "internal/rheology.h"
 #include "rheology/prony.h"
 
 enum { ONE = 1 };

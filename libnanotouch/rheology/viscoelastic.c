@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A history of the base, point by point. The first steps of a contact are made shorter, in equal ratios: g(delta) is no
  * polynomial there. */
-#include "nanotouch/viscoelastic.h"
+#include "internal/field.h"
+#include "internal/rheology.h"
+#include "nanotouch/rheology.h"
 
 #include <math.h>
 #include <stddef.h>

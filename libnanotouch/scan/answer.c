@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The motions at the set point over a flat, and the slopes of the slow flow there: how a tap answers to the z loop.
  *
- * Of flow.h with g = -fc, a motion that repeats has D sin(phi) = r A/Q + fs and D cos(phi) = g + (1 - r^2) A. On the
+ * Of tapping.h with g = -fc, a motion that repeats has D sin(phi) = r A/Q + fs and D cos(phi) = g + (1 - r^2) A. On the
  * way down the first gap where the attraction is enough has the attractive motion, that where the repulsion is, the
  * other. */
 #include "answer.h"

@@ -2,7 +2,7 @@
  * One motion of a tapping lever for a target, by Newton's method in the plane of swing and depth; what the harmonics
  * that are left out would change; whether it stays. All motions: curve.c. Which of them a lever comes to: branches.c.
  */
-#include "nanotouch/advanced/balance.h"
+#include "internal/balance.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to the library: what balance.h does not promise. */
+ * Private to the library: what the public header does not have. */
 #ifndef NANOTOUCH_SCAN_BALANCE_PRIVATE_H
 #define NANOTOUCH_SCAN_BALANCE_PRIVATE_H
 
-#include "nanotouch/advanced/balance.h"
+#include "internal/balance.h"
 
 /* The motion of the target nearest to *state. NT_E_ARGUMENT; NT_E_NO_CONVERGENCE: there is none near, the contact never
  * lets go, or the harmonics do not converge. *state and *value only on NT_OK. */

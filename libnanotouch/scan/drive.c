@@ -5,6 +5,7 @@
 
 #include "core/problem.h"
 #include "core/same_bits.h"
+#include "internal/field.h"
 #include "nanotouch/advanced/tapping.h"
 #include "nanotouch/material.h"
 

@@ -13,7 +13,8 @@
 
 #include "core/same_bits.h"
 #include "edges.h"
-#include "nanotouch/advanced/flow.h"
+#include "internal/tapping.h"
+#include "nanotouch/advanced/tapping.h"
 #include "nanotouch/material.h"
 #include "scan/flow.h"
 #include "scene/parts.h"

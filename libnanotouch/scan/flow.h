@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to the library: what flow.h does not promise. */
+ * Private to the library: what the public header does not have. */
 #ifndef NANOTOUCH_SCAN_FLOW_PRIVATE_H
 #define NANOTOUCH_SCAN_FLOW_PRIVATE_H
 
-#include "nanotouch/advanced/flow.h"
+#include "internal/tapping.h"
+#include "nanotouch/advanced/tapping.h"
 
 /* Of a period of amplitude A of q [m] that goes down to a gap [m], attached before or not. base_height is not used. */
 NT_REALTIME nt_flow_average nt_flow_average_at(const nt_tapping *tapping, const nt_tapping_over *over, int attached,

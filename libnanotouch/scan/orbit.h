@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_SCAN_ORBIT_H
 #define NANOTOUCH_SCAN_ORBIT_H
 
-#include "nanotouch/advanced/balance.h"
+#include "internal/balance.h"
 
 enum { NEGLECTED = 24, ORDERS = NT_HARMONICS_MAX + NEGLECTED, PRODUCTS = 2 * NT_HARMONICS_MAX };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * How hard a tapping lever may hit on its way from one motion to another.
  *
- * Of flow.h, with g = -fc [m] (repulsion above 0), u the depth of the lowest point along q, and phi the lag of q:
+ * Of tapping.h, with g = -fc [m] (repulsion above 0), u the depth of the lowest point along q, and phi the lag of q:
  *     2 r A' = D sin(phi) - r A/Q - fs,    2 r A phi' = -g + D cos(phi) - (1 - r^2) A,    u' = A' + v/w0,
  * v the speed at which base and sample come together. The product g u' gives for a way that goes deeper throughout
  *     integral of g du <= A integral of (D sin(phi) + 2 r v/w0 - r A/Q)(-dphi) + D cos(phi) u + (r^2 - 1) A u:
@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "internal/scan.h"
 #include "nanotouch/advanced/scan.h"
 #include "nanotouch/material.h"
 #include "scan/flow.h"

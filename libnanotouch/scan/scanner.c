@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * One tick after the other: the place, the lever there, the reading, the loop, the stage. */
+#include "internal/dynamics.h"
+#include "internal/random.h"
+#include "internal/scan.h"
+#include "internal/tapping.h"
 #include "nanotouch/advanced/scan.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Which tier of tapping a demand needs, and lines of an image by it. */
-#include "nanotouch/advanced/steady.h"
+#include "internal/steady.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -5,6 +5,8 @@
 #include <stddef.h>
 
 #include "core/problem.h"
+#include "internal/field.h"
+#include "internal/scan.h"
 #include "loop.h"
 #include "nanotouch/advanced/scan.h"
 #include "nanotouch/material.h"

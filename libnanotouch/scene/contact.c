@@ -8,6 +8,9 @@
 
 #include "contact/hertz.h"
 #include "contact/maugis_table.h"
+#include "internal/contact.h"
+#include "internal/geometry.h"
+#include "internal/maugis.h"
 #include "scene/parts.h"
 #include "scene/scene.h"
 

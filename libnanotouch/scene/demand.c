@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * How accurate which quantity has to be: the description of a demand. */
+#include "internal/field.h"
 #include "scene/parts.h"
 
 #define ROW(path, ...) NT_FIELD_NAMED("demand." #path, nt_demand, path, __VA_ARGS__)

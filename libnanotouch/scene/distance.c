@@ -2,6 +2,7 @@
  * How far apart two laws of contact are over a scene's range, and the scale S that a plan's errors are measured by. */
 #include <math.h>
 
+#include "internal/contact.h"
 #include "scene/deformation/deform.h"
 #include "scene/parts.h"
 

@@ -4,6 +4,7 @@
  * the force most beside the folds, where it goes as a root. */
 #include <math.h>
 
+#include "internal/contact.h"
 #include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
 

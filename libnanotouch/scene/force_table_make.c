@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "core/problem.h"
+#include "internal/contact.h"
 #include "nanotouch/advanced/force_table.h"
 #include "scene/parts.h"
 

@@ -7,6 +7,8 @@
  * its law, where its energy is 0 or above; what is lost at either is dissipated. No cycle can give out energy. */
 #include <math.h>
 
+#include "internal/interaction.h"
+#include "internal/maugis.h"
 #include "nanotouch/interaction.h"
 #include "scene/deformation/deform.h"
 #include "scene/interaction.h"

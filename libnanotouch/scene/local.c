@@ -3,6 +3,9 @@
 #include <math.h>
 
 #include "core/same_bits.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
+#include "internal/plan.h"
 #include "scene/deformation/deform.h"
 #include "scene/parts.h"
 

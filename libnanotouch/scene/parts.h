@@ -4,6 +4,7 @@
 #define NANOTOUCH_SCENE_PARTS_H
 
 #include "core/problem.h"
+#include "internal/maugis.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * From a scene and a demand to what has to be computed: the steps of parts.h in their order. */
+#include "internal/plan.h"
 #include "nanotouch/plan.h"
 
 #include <float.h>

@@ -7,6 +7,7 @@
  * that is 1/(1 - nu^2) g'(delta + v eta/E(T)) v eta, g(delta) the elastic law over E*. */
 #include <math.h>
 
+#include "internal/rheology.h"
 #include "rheology/loop.h"
 #include "rheology/profile.h"
 #include "scene/parts.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The description of a scene: defaults, one table of fields, checks of each field and of what belongs together. */
 #include "nanotouch/scene.h"
+#include "internal/field.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,8 @@
 #include "control/preflight.h"
 #include "core/clamp.h"
 #include "core/problem.h"
-#include "nanotouch/advanced/preflight.h"
+#include "internal/control.h"
+#include "nanotouch/advanced/control.h"
 #include "session/state.h"
 
 #define SETTLES 10.0 /* time constants of lever and lock-in amplifier until the free amplitude is there */

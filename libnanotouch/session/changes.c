@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/problem.h"
+#include "internal/session.h"
 #include "session/state.h"
 #include "session/terrain.h"
 

@@ -3,6 +3,7 @@
  * a time where requests are prepared. */
 #include <math.h>
 
+#include "internal/session.h"
 #include "session/state.h"
 
 #if NT_HAS_SYSTEM

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Requests and answers. A request lies where its id says, so that writer and client need no common counter: the writer
  * looks into one slot per call, whatever the others hold. */
-#include "nanotouch/commands.h"
+#include "nanotouch/frames.h"
 
 #include <stdlib.h>
 

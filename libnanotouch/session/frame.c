@@ -7,6 +7,7 @@
  * adhesion, its Laplace pressure is sigma0: c is where it ends. */
 #include <math.h>
 
+#include "internal/session.h"
 #include "nanotouch/material.h"
 #include "scene/parts.h"
 #include "session/frames.h"

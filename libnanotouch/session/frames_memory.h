@@ -7,7 +7,7 @@
 
 #include "core/slot.h"
 #include "hal/shared_memory.h"
-#include "nanotouch/commands.h"
+#include "nanotouch/frames.h"
 
 typedef struct nt_frame_slot {
     nt_word stamp; /* number of the frame, 1 first */

@@ -3,7 +3,9 @@
 #include <math.h>
 
 #include "core/same_bits.h"
-#include "nanotouch/advanced/hazard.h"
+#include "internal/hazard.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/plan.h"
 #include "scene/interaction.h"
 #include "scene/parts.h"
 #include "session/grip.h"

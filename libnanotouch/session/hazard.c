@@ -7,7 +7,11 @@
  *
  * Contact stiffens under load. What the lever's base still comes closer by, once the limit is reached, presses by the
  * contact's own law: its stiffness is the mean over that way. */
-#include "nanotouch/advanced/hazard.h"
+#include "internal/hazard.h"
+#include "internal/control.h"
+#include "internal/margins.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/plan.h"
 
 #include <math.h>
 
@@ -15,10 +19,9 @@
 #include "control/preflight.h"
 #include "control/servo.h"
 #include "core/same_bits.h"
-#include "nanotouch/advanced/preflight.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/control.h"
 #include "nanotouch/material.h"
-#include "nanotouch/servo.h"
-#include "nanotouch/supervisor.h"
 #include "scene/parts.h"
 #include "session/grip.h"
 #include "session/hazard.h"

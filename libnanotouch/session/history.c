@@ -2,6 +2,7 @@
  * Copies of a simulated session's states: snapshots that a caller keeps, and the history of a session that runs in its
  * thread, a moment each quarter of a second, to go back to. */
 #include "session/history.h"
+#include "internal/session.h"
 
 #include <stdlib.h>
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/problem.h"
+#include "internal/session.h"
 #include "session/state.h"
 
 nt_status nt_session_check_place(const nt_session *session, double x, double y, double duration, nt_problem *problem)

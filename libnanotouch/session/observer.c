@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The readers' end of the frames: no write to shared memory, every loop bounded. */
+#include "internal/observer.h"
 #include "nanotouch/advanced/observer.h"
 
 #include <math.h>

@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "core/problem.h"
+#include "internal/session.h"
 
 #define WAKE 1000000              /* wall pace: [ns] */
 enum { BATCH = 64 };              /* ticks between two looks at what was asked of the thread */

@@ -4,6 +4,9 @@
 #include <string.h>
 
 #include "core/problem.h"
+#include "internal/manipulation.h"
+#include "internal/margins.h"
+#include "internal/session.h"
 #include "session/state.h"
 #include "session/terrain.h"
 

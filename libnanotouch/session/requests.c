@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Requests on their way into the loop, which applies them between two ticks and keeps each as an event. What a change
- * has replaced is freed by the thread that has prepared it, never by the loop. Clients of published frames (commands.h)
+ * has replaced is freed by the thread that has prepared it, never by the loop. Clients of published frames (frames.h)
  * ask through the loop: it hands their requests to the thread that prepares, and answers them. */
 #include <math.h>
 

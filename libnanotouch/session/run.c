@@ -6,6 +6,7 @@
 #include "core/axes.h"
 #include "hal/hal.h"
 #include "hal/sim/sim.h"
+#include "internal/session.h"
 #include "session/frames_memory.h"
 #include "session/state.h"
 

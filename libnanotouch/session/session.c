@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Opens and closes a session; the heap is used here and in composition.c only. */
+#include "internal/session.h"
 #include "nanotouch/session.h"
 
 #include <math.h>

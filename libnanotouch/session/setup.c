@@ -3,7 +3,7 @@
 #include <limits.h>
 #include <math.h>
 
-#include "nanotouch/advanced/preflight.h"
+#include "nanotouch/advanced/control.h"
 
 #include "control/preflight.h"
 #include "core/problem.h"

@@ -7,6 +7,7 @@
 
 #include "core/ring.h"
 #include "hal/clock.h"
+#include "internal/margins.h"
 #include "nanotouch/session.h"
 #include "session/origin.h"
 

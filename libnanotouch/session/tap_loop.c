@@ -5,8 +5,8 @@
 
 #include "control/known_law.h"
 #include "control/sampled.h"
+#include "nanotouch/control.h"
 #include "nanotouch/material.h"
-#include "nanotouch/servo.h"
 #include "scan/answer.h"
 #include "scan/loop.h"
 #include "session/state.h"

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Makes a terrain: what is needed is checked first, then surface, radii, bank and plan follow from each other. The heap
  * is used in make only. */
+#include "internal/terrain.h"
+#include "internal/maugis.h"
+#include "internal/plan.h"
 #include "nanotouch/advanced/terrain.h"
 
 #include <math.h>

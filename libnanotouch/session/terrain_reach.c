@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "core/problem.h"
+#include "internal/terrain.h"
 #include "nanotouch/advanced/terrain.h"
 #include "session/state.h"
 #include "session/terrain.h"

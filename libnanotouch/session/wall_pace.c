@@ -6,6 +6,7 @@
 #include <limits.h>
 #include <math.h>
 
+#include "internal/control.h"
 #include "session/state.h"
 
 #define WAKE 1000000 /* at the most between two wake-ups [ns] */

@@ -9,6 +9,7 @@
  * not fall below a half of its value there over the neighbours; at an edge (below a quarter) it is the pixel's own
  * height, in between a part of the difference. */
 #include "core/same_bits.h"
+#include "internal/field.h"
 #include "nanotouch/advanced/field.h"
 #include "nanotouch/surface.h"
 #include "surface/surface.h"

@@ -6,6 +6,7 @@
  * of the piece. */
 #include "surface/extremes.h"
 #include "core/same_bits.h"
+#include "internal/surface.h"
 
 #include <math.h>
 

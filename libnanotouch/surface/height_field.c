@@ -3,6 +3,8 @@
  *     z(x, y) = sum c[j][i] B(x/dx - i) B(y/dy - j).
  * The coefficients c follow from the heights by a recursive filter with the pole sqrt(3) - 2, along rows, then columns.
  * The mirror makes the slope across a border 0, so that the surface continues level outside. */
+#include "internal/field.h"
+#include "internal/surface.h"
 #include "nanotouch/advanced/field.h"
 #include "nanotouch/surface.h"
 

@@ -6,6 +6,8 @@
  * between tip and body curves by 1/R + kappa = 1/(R (1 - R k)). Of the two directions the contact takes the geometric
  * mean (to second order in their difference, Johnson 1985): R_eff = R sqrt((1 - R k1)(1 - R k2)) = R sqrt(1 - 2 R H +
  * R^2 K), H mean, K Gaussian curvature of D. On the sphere of a sharp edge k = 1/R and R_eff = 0. */
+#include "internal/field.h"
+#include "internal/surface.h"
 #include "nanotouch/advanced/field.h"
 #include "nanotouch/surface.h"
 

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "nanotouch/supervisor.h"
+#include "nanotouch/control.h"
 
 #define ROUNDING 1e-6 /* of a time: what a record's own may have lost */
 

@@ -3,6 +3,8 @@
  * the distance there. */
 #include <math.h>
 
+#include "internal/contact.h"
+#include "internal/geometry.h"
 #include "nanotouch/advanced/view.h"
 #include "scene/parts.h"
 

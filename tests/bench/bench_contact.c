@@ -11,8 +11,10 @@
 
 #include "../c/larger.h"
 #include "contact/maugis_table.h"
-#include "nanotouch/advanced/maugis_bank.h"
-#include "nanotouch/advanced/maugis_table.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
+#include "internal/surface.h"
+#include "nanotouch/advanced/maugis.h"
 #include "nanotouch/material.h"
 #include "nanotouch/surface.h"
 

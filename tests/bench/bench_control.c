@@ -14,6 +14,7 @@
 #include <time.h>
 
 #include "../c/larger.h"
+#include "internal/session.h"
 #include "nanotouch/nanotouch.h"
 
 enum { TICKS = 20000 };

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "../c/larger.h"
+#include "internal/surface.h"
 #include "nanotouch/nanotouch.h"
 
 enum { REPETITIONS = 9, POINTS = 64 };

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "internal/fit.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/fit.h"
 

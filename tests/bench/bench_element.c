@@ -4,8 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "nanotouch/advanced/maugis_bank.h"
-#include "nanotouch/advanced/maugis_table.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
+#include "nanotouch/advanced/maugis.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"

@@ -13,6 +13,8 @@
 
 #include "../c/larger.h"
 #include "drawn.h"
+#include "internal/maugis.h"
+#include "internal/plan.h"
 #include "nanotouch/nanotouch.h"
 #include "scene/parts.h"
 #include "scene/scene.h"

@@ -8,7 +8,8 @@
 #include <time.h>
 
 #include "../c/larger.h"
-#include "nanotouch/viscoelastic_loop.h"
+#include "internal/rheology.h"
+#include "nanotouch/rheology.h"
 
 enum { POINTS = 2001, RUNS = 200, TICKS = 200, ROOM = 400000 };
 

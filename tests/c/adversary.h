@@ -10,7 +10,8 @@
 #include "adversary_rigs.h"
 #include "control/preflight.h"
 #include "failure_of.h"
-#include "nanotouch/advanced/preflight.h"
+#include "internal/session.h"
+#include "nanotouch/advanced/control.h"
 #include "session/state.h" /* the truth between two ticks */
 
 /* How close it came: 1 is the promise. */

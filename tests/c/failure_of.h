@@ -2,8 +2,8 @@
 #ifndef TESTS_FAILURE_OF_H
 #define TESTS_FAILURE_OF_H
 
-#include "nanotouch/advanced/faults.h"
-#include "nanotouch/guarantee.h"
+#include "nanotouch/advanced/sim.h"
+#include "nanotouch/margins.h"
 
 /* Which failure of the guarantee a fault is; NT_FAILURES: none, the first number holds. */
 static inline nt_failure failure_of(nt_fault_kind kind, nt_channel channel)

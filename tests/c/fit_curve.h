@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "internal/fit.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/fit.h"
 

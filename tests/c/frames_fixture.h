@@ -15,7 +15,6 @@
 #include <unistd.h>
 
 #include "nanotouch/advanced/observer.h"
-#include "nanotouch/commands.h"
 #include "nanotouch/frames.h"
 
 enum { FRAME_WORDS = sizeof(nt_frame) / sizeof(uint64_t) };

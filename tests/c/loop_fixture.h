@@ -4,6 +4,7 @@
 #define TESTS_LOOP_FIXTURE_H
 
 #include "hal/sim/sim.h"
+#include "internal/margins.h"
 #include "nanotouch/nanotouch.h"
 #include "session/hazard.h"
 

@@ -4,6 +4,7 @@
 #define TESTS_MAUGIS_FIXTURE_H
 
 #include "assertions.h"
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 

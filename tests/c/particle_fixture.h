@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "nanotouch/advanced/particle.h"
+#include "nanotouch/advanced/manipulation.h"
 #include "nanotouch/types.h"
 
 /* Johnson, Kendall and Roberts (Johnson 1985, Eq. 5.47): the radius of contact of a sphere [m]. */

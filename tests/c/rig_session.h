@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "converter_rig.h"
-#include "nanotouch/advanced/hal_spi.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "session_fixture.h"
 #include "spidev_calls.h"
 #include "spidev_model.h"

@@ -9,10 +9,12 @@
 #include "assertions.h"
 #include "control/margins.h"
 #include "hal/sim/sim.h"
+#include "internal/hazard.h"
 #include "larger.h"
 #include "loop_fixture.h"
-#include "nanotouch/advanced/hazard.h"
 #include "nanotouch/advanced/random.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/plan.h"
 #include "scene/interaction.h"
 
 #define LEVER 50.0 /* k_l [N/m] */

@@ -4,7 +4,10 @@
 #ifndef TESTS_SINGLE_MADE_H
 #define TESTS_SINGLE_MADE_H
 
-#include "nanotouch/control.h"
+#include "internal/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 #include "nanotouch_single_of.h"
 
 /* Structs of nothing but numbers, in the same order. */

@@ -11,7 +11,10 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/control.h"
+#include "internal/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 static nt_touch touch;
 

@@ -13,7 +13,7 @@
 #include "hal/sim/sim.h"
 #include "host_fixture.h"
 #include "larger.h"
-#include "nanotouch/advanced/hal_spi.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "nanotouch/material.h"
 #include "nanotouch/nanotouch.h"
 

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "contact/maugis_table.h"
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 

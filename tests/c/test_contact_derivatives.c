@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/advanced/contact_derivatives.h"
+#include "internal/contact_derivatives.h"
 #include "nanotouch/material.h"
 
 /* Force with parameter i (the indentation, R, E*, w, sigma0) moved by a part of itself. */

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 
 static const nt_contact silicon = {20e-9, 76.9e9, 0.144, 7e8};

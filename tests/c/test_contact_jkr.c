@@ -11,6 +11,7 @@
 
 #include "../reference/jkr_table.h"
 #include "assertions.h"
+#include "internal/contact.h"
 #include "larger.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"

@@ -9,6 +9,8 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "internal/contact.h"
+#include "internal/geometry.h"
 #include "larger.h"
 #include "nanotouch/advanced/geometry.h"
 

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "contact/contact_equilibrium.h"
+#include "internal/contact.h"
 #include "maugis_fixture.h"
 #include "nanotouch/advanced/contact_equilibrium.h"
 

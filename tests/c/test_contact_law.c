@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 

@@ -10,9 +10,11 @@
 #include <cmocka.h>
 
 #include "contact/maugis_bank.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
 #include "larger.h"
 #include "maugis_fixture.h"
-#include "nanotouch/advanced/maugis_bank.h"
+#include "nanotouch/advanced/maugis.h"
 
 enum { PANELS = 240, CELLS = 26000 };
 static nt_maugis_panel panels[PANELS];

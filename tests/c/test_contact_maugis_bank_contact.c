@@ -8,8 +8,9 @@
 
 #include <cmocka.h>
 
+#include "internal/maugis.h"
 #include "maugis_fixture.h"
-#include "nanotouch/advanced/maugis_bank.h"
+#include "nanotouch/advanced/maugis.h"
 
 static nt_bank_value eval_radius(const nt_maugis_bank *bank, double lambda, double radius, double d)
 {

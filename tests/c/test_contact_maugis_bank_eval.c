@@ -8,9 +8,10 @@
 #include <cmocka.h>
 
 #include "contact/maugis_bank.h"
+#include "internal/maugis.h"
 #include "larger.h"
 #include "maugis_fixture.h"
-#include "nanotouch/advanced/maugis_bank.h"
+#include "nanotouch/advanced/maugis.h"
 
 enum { PANELS = 60, CELLS = 2000 };
 static nt_maugis_panel panels[PANELS];

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "internal/contact.h"
 #include "larger.h"
 #include "maugis_fixture.h"
 

@@ -25,6 +25,7 @@ static const reference indentations[] = {
 };
 static const reference loads[] = {
 #include "../reference/maugis_loads.inc"
+#include "internal/contact.h"
 };
 
 static nt_maugis prepared(double lambda)

@@ -11,6 +11,8 @@
 #include <cmocka.h>
 
 #include "contact/contact_equilibrium.h"
+#include "internal/contact.h"
+#include "internal/contact_equilibrium.h"
 #include "maugis_fixture.h"
 #include "nanotouch/advanced/contact_equilibrium.h"
 

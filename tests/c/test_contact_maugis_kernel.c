@@ -11,8 +11,10 @@
 #include <cmocka.h>
 
 #include "contact/maugis_table.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
 #include "maugis_fixture.h"
-#include "nanotouch/advanced/maugis_table.h"
+#include "nanotouch/advanced/maugis.h"
 
 enum { CAPACITY = 300, COUNT_MAX = 1500 };
 static nt_maugis_cell cells[CAPACITY];

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "../reference/maugis_table.h"
+#include "internal/contact.h"
 #include "larger.h"
 #include "maugis_fixture.h"
 

@@ -10,9 +10,11 @@
 #include <cmocka.h>
 
 #include "contact/maugis_table.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
 #include "larger.h"
 #include "maugis_fixture.h"
-#include "nanotouch/advanced/maugis_table.h"
+#include "nanotouch/advanced/maugis.h"
 
 enum { CAPACITY = 2000 };
 static nt_maugis_cell cells[CAPACITY];

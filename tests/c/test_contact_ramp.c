@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "internal/contact.h"
+#include "internal/contact_equilibrium.h"
 #include "larger.h"
 #include "maugis_fixture.h"
 #include "nanotouch/advanced/contact_equilibrium.h"

@@ -10,6 +10,8 @@
 
 #include "../reference/geometry_table.h"
 #include "assertions.h"
+#include "internal/contact.h"
+#include "internal/geometry.h"
 #include "larger.h"
 #include "nanotouch/advanced/geometry.h"
 

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "internal/geometry.h"
 #include "nanotouch/advanced/geometry.h"
 
 /* Eight terms: the ninth, 4.4e-6 (delta/R)^8 of a and 1/6 of that of F, is the first that is left out. */

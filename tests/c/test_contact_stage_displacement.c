@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "internal/geometry.h"
 #include "nanotouch/advanced/geometry.h"
 
 static const nt_shape sphere = {NT_SHAPE_PARABOLOID, 0, 30e-9, 0.0, 0.0};

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "internal/contact.h"
 #include "nanotouch/advanced/geometry.h"
 
 static nt_contact_validity judge(nt_shape shape, double a, double indentation, double thickness)

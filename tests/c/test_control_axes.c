@@ -9,7 +9,8 @@
 #include <cmocka.h>
 
 #include "core/rig.h"
-#include "nanotouch/advanced/motor_bound.h"
+#include "internal/control.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/touch.h"
 
 #define PI 3.14159265358979323846

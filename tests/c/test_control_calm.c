@@ -12,7 +12,9 @@
 
 #include "core/rig.h"
 #include "larger.h"
-#include "nanotouch/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 #define PI 3.14159265358979323846
 

@@ -8,7 +8,9 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 #define STIFFNESS 665.0 /* silicon on silicon under 0.4 uN [N/m] */
 

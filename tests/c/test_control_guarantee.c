@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "core/lti.h"
+#include "internal/margins.h"
 #include "larger.h"
-#include "nanotouch/guarantee.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
 

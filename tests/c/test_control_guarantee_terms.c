@@ -12,9 +12,11 @@
 #include "control/bound.h"
 #include "control/margins.h"
 #include "control_draws.h"
+#include "internal/control.h"
+#include "internal/margins.h"
 #include "larger.h"
+#include "nanotouch/control.h"
 #include "nanotouch/margins.h"
-#include "nanotouch/supervisor.h"
 
 #define PI 3.14159265358979323846
 #define EXACT 1e-11 /* rounding of some twenty operations */

@@ -14,9 +14,11 @@
 #include "../reference/response_table.h"
 #include "control_draws.h"
 #include "core/complex_number.h"
+#include "internal/control.h"
+#include "internal/margins.h"
 #include "larger.h"
+#include "nanotouch/control.h"
 #include "nanotouch/margins.h"
-#include "nanotouch/servo.h"
 
 #define PI 3.14159265358979323846
 enum { STIFFNESS = sizeof response_cases[0].in / sizeof(double) - 1 };

@@ -13,7 +13,8 @@
 #include "control/follow.h"
 #include "control/lift.h"
 #include "control/stuck.h"
-#include "nanotouch/supervisor.h"
+#include "internal/control.h"
+#include "nanotouch/control.h"
 
 /* Round numbers: a period of 1/16 s, 1 N/m, limits of some metres. */
 static nt_supervisor plain(void)

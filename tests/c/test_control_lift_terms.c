@@ -11,6 +11,7 @@
 
 #include "control/lift.h"
 #include "control/stuck.h"
+#include "internal/control.h"
 #include "larger.h"
 
 /* A force counts as grown by more than 1 N and 1 nm of the lever. */

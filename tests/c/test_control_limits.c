@@ -15,9 +15,11 @@
 #include "control/sampled.h"
 #include "control/sideways.h"
 #include "core/rig.h"
+#include "internal/margins.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/control.h"
 #include "nanotouch/margins.h"
-#include "nanotouch/servo.h"
+#include "nanotouch/touch.h"
 
 /* --- margins --- */
 

@@ -8,8 +8,10 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/random.h"
-#include "nanotouch/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 #define PI 3.14159265358979323846
 

@@ -10,9 +10,12 @@
 
 #include <cmocka.h>
 
+#include "internal/control.h"
 #include "larger.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/random.h"
-#include "nanotouch/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 enum { LATE_MOST = 8, AXES = NT_AXES };
 

@@ -11,8 +11,9 @@
 
 #include "control/motor.h"
 #include "control_draws.h"
+#include "internal/control.h"
 #include "larger.h"
-#include "nanotouch/advanced/motor_bound.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/touch.h"
 
 #define PI 3.14159265358979323846

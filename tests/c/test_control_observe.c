@@ -10,7 +10,9 @@
 
 #include "control/observe.h"
 #include "larger.h"
-#include "nanotouch/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 enum { GAP = 37, TICKS = 2000 };
 #define SPEED 0.02 /* of the hand [m/s] */

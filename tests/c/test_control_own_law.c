@@ -8,9 +8,10 @@
 
 #include <cmocka.h>
 
+#include "internal/control.h"
 #include "larger.h"
+#include "nanotouch/control.h"
 #include "nanotouch/margins.h"
-#include "nanotouch/servo.h"
 
 /* tau = -reflection alpha_f f_s + raw f_m + smooth f_m' + share b v; the rest is what the rules do not know. */
 typedef struct mine {

@@ -9,9 +9,12 @@
 
 #include <cmocka.h>
 
+#include "internal/control.h"
 #include "larger.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/random.h"
-#include "nanotouch/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 /* In the operator's scale, so that alpha_p = alpha_f = 1. */
 typedef struct loop {

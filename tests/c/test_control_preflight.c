@@ -11,7 +11,7 @@
 #include "control/preflight.h"
 #include "core/rig.h"
 #include "larger.h"
-#include "nanotouch/advanced/preflight.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/random.h"
 
 /* What is wrong with the rig. */

@@ -14,7 +14,7 @@
 #include "control_draws.h"
 #include "core/rig.h"
 #include "larger.h"
-#include "nanotouch/advanced/preflight.h"
+#include "nanotouch/advanced/control.h"
 
 #define PI 3.14159265358979323846
 

@@ -11,9 +11,11 @@
 #include "../reference/loop_table.h"
 #include "../reference/sideways_table.h"
 #include "control/margins.h"
+#include "internal/control.h"
+#include "internal/margins.h"
 #include "larger.h"
+#include "nanotouch/control.h"
 #include "nanotouch/margins.h"
-#include "nanotouch/servo.h"
 
 enum { CASES = sizeof loop_cases / sizeof loop_cases[0], STIFFNESS = sizeof loop_cases[0].in / sizeof(double) - 1 };
 

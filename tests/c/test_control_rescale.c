@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "internal/control.h"
 #include "touch_fixture.h"
 
 static void open_bench(bench *b)

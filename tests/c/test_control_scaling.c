@@ -8,7 +8,9 @@
 #include <cmocka.h>
 
 #include "core/rig.h"
-#include "nanotouch/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 /* Eq. 21 in SI (erratum E17): L = 0.1 um and delta_max = 0.3 um over 2 cm; 10 N over 2.64 uN (10 V, 0.033 um/V, 8 N/m)
  * and 0.6 uN of attraction; the paper prints 3.2 uN and so 3.1e6. */

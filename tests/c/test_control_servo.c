@@ -8,9 +8,10 @@
 
 #include <cmocka.h>
 
+#include "internal/control.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
-#include "nanotouch/servo.h"
+#include "nanotouch/control.h"
 
 static const nt_signals still = {.master_damping = 100.0, .scaling = {2e-5, 3e6}, .gain_factor = 1.0};
 

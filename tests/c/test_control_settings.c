@@ -8,7 +8,9 @@
 #include <cmocka.h>
 
 #include "core/rig.h"
-#include "nanotouch/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 static void defaults_are_valid_and_inside_the_rig(void **state)
 {

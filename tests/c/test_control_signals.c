@@ -13,6 +13,7 @@
 #include "control/modes.h"
 #include "control/observe.h"
 #include "control/sideways.h"
+#include "internal/control.h"
 #include "larger.h"
 #include "plain_touch.h"
 

@@ -7,8 +7,11 @@
 
 #include <cmocka.h>
 
+#include "internal/control.h"
 #include "larger.h"
-#include "nanotouch/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 #define PI 3.14159265358979323846
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A sensor that shows no noise while the stage moves is dead; how much it shows is learnt from its first samples. */
+#include "internal/control.h"
 #include "larger.h"
 #include "supervisor_fixture.h"
 

@@ -3,6 +3,7 @@
 #include <float.h>
 
 #include "core/rig.h"
+#include "internal/control.h"
 #include "supervisor_fixture.h"
 
 static void no_event(input *in)

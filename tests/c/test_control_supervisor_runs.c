@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "internal/control.h"
 #include "larger.h"
 #include "nanotouch/touch.h"
 

@@ -11,8 +11,10 @@
 
 #include "core/rig.h"
 #include "larger.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/random.h"
-#include "nanotouch/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 #define ONE_TICK 1e-4
 enum { FADE = 500 }; /* ticks in 50 ms */

@@ -9,8 +9,9 @@
 #include <cmocka.h>
 
 #include "control_draws.h"
+#include "internal/control.h"
 #include "larger.h"
-#include "nanotouch/scaling.h"
+#include "nanotouch/control.h"
 #include "nanotouch/touch.h"
 
 #define PI 3.14159265358979323846

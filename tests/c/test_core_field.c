@@ -9,6 +9,7 @@
 
 #include <string.h>
 
+#include "internal/field.h"
 #include "nanotouch/advanced/field.h"
 
 typedef struct pair {

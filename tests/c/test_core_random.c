@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "internal/random.h"
 #include "nanotouch/advanced/random.h"
 
 /* The numbers were computed by a separate implementation in Python from the published algorithms (arbitrary integers

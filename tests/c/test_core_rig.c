@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "core/rig.h"
+#include "internal/rig.h"
 #include "nanotouch/rig.h"
 
 static void defaults_are_the_papers(void **state)

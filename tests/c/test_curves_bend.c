@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "internal/curves.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/curves.h"

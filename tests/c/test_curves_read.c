@@ -11,6 +11,7 @@
 
 #include "assertions.h"
 #include "curves/robust.h"
+#include "internal/curves.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/curves.h"
 

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "cantilever_fields.h"
+#include "internal/dynamics.h"
 
 enum { BUDGET = 400 };
 

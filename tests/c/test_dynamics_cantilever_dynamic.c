@@ -10,6 +10,8 @@
 
 #include "cantilever_fields.h"
 #include "core/rig.h"
+#include "internal/dynamics.h"
+#include "internal/random.h"
 #include "larger.h"
 
 #define PI 3.14159265358979323846

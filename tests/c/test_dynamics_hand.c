@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "dynamics/dynamics.h"
+#include "internal/random.h"
 #include "larger.h"
 #include "nanotouch/dynamics.h"
 

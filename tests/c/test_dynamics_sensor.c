@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "dynamics/dynamics.h"
+#include "internal/random.h"
 #include "nanotouch/dynamics.h"
 
 static void ideal_sensor_is_transparent(void **state)

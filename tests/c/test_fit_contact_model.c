@@ -8,6 +8,8 @@
 
 #include <cmocka.h>
 
+#include "internal/contact.h"
+#include "internal/fit.h"
 #include "larger.h"
 #include "nanotouch/advanced/geometry.h"
 #include "nanotouch/fit.h"

@@ -6,6 +6,7 @@
 
 #include "failing_heap.h"
 #include "fit_curve.h"
+#include "internal/fit.h"
 
 enum { EXHAUSTIVE = 600, TRIED = 199 }; /* each of so many allocations is tried; of more, so many; or "every" one */
 static int every;

@@ -2,6 +2,7 @@
  * fit/power.cpp, fit/branches.cpp: a law of another tip, a contact that adheres or keeps work back is told; a right one
  * is not. */
 #include "fit_curve.h"
+#include "internal/fit.h"
 
 static const double noise = 20e-12; /* N */
 

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "fit_curve.h"
+#include "internal/fit.h"
 
 static const double noise = 20e-12; /* N */
 

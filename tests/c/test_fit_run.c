@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "fit_curve.h"
+#include "internal/fit.h"
 #include "larger.h"
 
 static void exact_without_noise(void **state)

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "fit_curve.h"
+#include "internal/fit.h"
 
 /* The range of adhesion comes out of a curve without noise, but not out of a real one: w, delta0 and h0 together
  * imitate another range to about a piconewton. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * fit_viscoelastic.h: arguments, and a curve of the library's own law given back (independent references are in
+ * fit.h: arguments, and a curve of the library's own law given back (independent references are in
  * tests/python/test_fit_ting.py). */
 #include <math.h>
 #include <setjmp.h>
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/fit_viscoelastic.h"
+#include "nanotouch/fit.h"
 
 enum { BRANCH = 300, POINTS = 2 * BRANCH };
 

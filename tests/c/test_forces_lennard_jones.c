@@ -9,6 +9,7 @@
 
 #include "force_laws.h"
 #include "larger.h"
+#include "internal/forces.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "force_laws.h"
+#include "internal/forces.h"
 #include "larger.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"

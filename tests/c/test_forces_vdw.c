@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "force_laws.h"
+#include "internal/forces.h"
 #include "nanotouch/forces.h"
 
 static const nt_vdw gold = {30e-9, 2.03e-19, 0.0, 0.165e-9}; /* the paper's Fig. 6 */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "assertions.h"
+#include "internal/corrugation.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/friction.h"

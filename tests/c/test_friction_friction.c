@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "assertions.h"
+#include "internal/friction.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/friction.h"

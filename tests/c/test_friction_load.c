@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Beside the sum of the pressures over rings of the contact (Maugis 1992; Johnson, Kendall, Roberts 1971). */
 #include "assertions.h"
+#include "internal/contact.h"
 #include "nanotouch/friction.h"
 
 static const nt_contact soft = {20e-9, 1e9, 0.05, 50e6};

@@ -11,7 +11,8 @@
 #include <cmocka.h>
 
 #include "hal/chips/chips.h"
-#include "nanotouch/advanced/chips.h"
+#include "internal/converters.h"
+#include "nanotouch/advanced/converters.h"
 
 static const nt_chip *chip(const char *name)
 {

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "hal/timing.h"
+#include "internal/timing.h"
 #include "nanotouch/advanced/hal_iio.h"
 #include "nanotouch/advanced/timing.h"
 

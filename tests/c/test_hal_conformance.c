@@ -13,9 +13,8 @@
 #include "conformance.h"
 #include "converter_rig.h"
 #include "host_fixture.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "nanotouch/advanced/hal_replay.h"
-#include "nanotouch/advanced/hal_spi.h"
-#include "nanotouch/advanced/realtime.h"
 #include "nanotouch/advanced/timing.h"
 #include "nanotouch/nanotouch.h" /* no name of these headers is taken by another */
 #include "pointer_device.h"

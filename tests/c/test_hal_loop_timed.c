@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/advanced/realtime.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "nanotouch/advanced/timing.h"
 
 typedef struct calls {

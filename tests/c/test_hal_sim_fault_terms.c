@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "hal/sim/parts.h"
+#include "internal/random.h"
 #include "larger.h"
 
 #define T 0.125

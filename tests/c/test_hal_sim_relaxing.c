@@ -9,7 +9,7 @@
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/advanced/sim.h"
-#include "nanotouch/viscoelastic.h"
+#include "nanotouch/rheology.h"
 
 enum { TICKS = 6001 };
 #define T 1e-4

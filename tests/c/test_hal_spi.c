@@ -13,7 +13,7 @@
 #include "conformance.h"
 #include "converter_rig.h"
 #include "host_fixture.h"
-#include "nanotouch/advanced/hal_spi.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "spidev_model.h"
 
 /* A kernel with two devices, whose next results can be set. */

@@ -15,7 +15,7 @@
 #include "converter_rig.h"
 #include "fuse_spidev.h"
 #include "host_fixture.h"
-#include "nanotouch/advanced/hal_spi.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 static simulated_bus bus;
 static fuse_spidev files;

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "hal/timing.h"
+#include "internal/timing.h"
 #include "nanotouch/advanced/timing.h"
 
 static nt_histogram histogram;

@@ -5,6 +5,7 @@
 
 #include "assertions.h"
 #include "host/state.h"
+#include "internal/host.h"
 #include "nanotouch/advanced/random.h"
 
 static const nt_host_preset *preset_named(const char *name)

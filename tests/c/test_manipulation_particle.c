@@ -5,7 +5,7 @@
 #include "assertions.h"
 #include "larger.h"
 #include "manipulation/particle.h"
-#include "nanotouch/advanced/particle.h"
+#include "nanotouch/advanced/manipulation.h"
 #include "particle_fixture.h"
 
 /* A tip that neither pulls nor rubs: its force goes through the centre. */

@@ -3,9 +3,10 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "internal/manipulation.h"
 #include "larger.h"
 #include "manipulation/particles.h"
-#include "nanotouch/advanced/particles.h"
+#include "nanotouch/advanced/manipulation.h"
 #include "nanotouch/advanced/random.h"
 #include "particle_fixture.h"
 

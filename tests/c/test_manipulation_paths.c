@@ -5,7 +5,7 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/advanced/particle.h"
+#include "nanotouch/advanced/manipulation.h"
 #include "nanotouch/advanced/random.h"
 
 enum { STEPS = 100, MODES = 8 };

@@ -3,9 +3,10 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "internal/manipulation.h"
 #include "larger.h"
 #include "manipulation/pushed.h"
-#include "nanotouch/advanced/pushed.h"
+#include "nanotouch/advanced/manipulation.h"
 #include "nanotouch/advanced/random.h"
 
 static nt_particles latex(void)

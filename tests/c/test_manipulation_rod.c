@@ -3,9 +3,10 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "internal/manipulation.h"
 #include "larger.h"
+#include "nanotouch/advanced/manipulation.h"
 #include "nanotouch/advanced/random.h"
-#include "nanotouch/advanced/rod.h"
 #include "nanotouch/material.h"
 
 #define BESIDE 70e-9 /* the tip touches here */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "assertions.h"
+#include "internal/plasticity.h"
 #include "larger.h"
 #include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/advanced/random.h"

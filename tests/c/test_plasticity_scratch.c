@@ -2,6 +2,7 @@
  * Beside the published forms for a sphere: width sqrt(8 P/(pi H)), ploughing 4a/(3 pi R) of the load (Bowden and Tabor
  * 1950, small contacts); areas are summed here. */
 #include "assertions.h"
+#include "internal/plasticity.h"
 #include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/material.h"
 

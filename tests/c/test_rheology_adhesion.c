@@ -5,7 +5,7 @@
 
 #include "assertions.h"
 #include "larger.h"
-#include "nanotouch/viscoelastic.h"
+#include "nanotouch/rheology.h"
 
 enum { POINTS = 1500 };
 #define PI 3.14159265358979323846

@@ -6,10 +6,11 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "internal/rheology.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/material.h"
-#include "nanotouch/viscoelastic_loop.h"
+#include "nanotouch/rheology.h"
 
 enum { TICKS = 2001, HISTORY = 200 };
 static int histories = 300;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A power law as a sum of exponentials: its error, its derivatives, and what it refuses. */
 #include "assertions.h"
+#include "internal/rheology.h"
 #include "nanotouch/rheology.h"
 #include "rheology/kernel.h"
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "assertions.h"
-#include "nanotouch/viscoelastic.h"
+#include "nanotouch/rheology.h"
 
 enum { POINTS = 301, ROOM = 40000 };
 

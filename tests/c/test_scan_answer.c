@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "internal/scan.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/advanced/scan.h"

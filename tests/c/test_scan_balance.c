@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
+#include "internal/balance.h"
 #include "larger.h"
-#include "nanotouch/advanced/balance.h"
 #include "nanotouch/advanced/random.h"
 #include "scan/balance.h"
 

@@ -10,9 +10,10 @@
 
 #include <cmocka.h>
 
+#include "internal/tapping.h"
 #include "larger.h"
-#include "nanotouch/advanced/flow.h"
 #include "nanotouch/advanced/random.h"
+#include "nanotouch/advanced/tapping.h"
 #include "nanotouch/material.h"
 #include "scan/flow.h"
 

@@ -71,7 +71,7 @@ typedef struct moving {
     double x, v, a, p;
 } moving;
 
-/* Equations of flow.h about the motion, and the free lever, whose amplitude follows the height alone. */
+/* Equations of tapping.h about the motion, and the free lever, whose amplitude follows the height alone. */
 static moving rate_of(const rig *r, const moving *m, double command, double base, int is_free)
 {
     const nt_tap_answer *at = &r->at;

@@ -9,6 +9,9 @@
 
 #include <cmocka.h>
 
+#include "internal/random.h"
+#include "internal/scan.h"
+#include "internal/tapping.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/advanced/scan.h"

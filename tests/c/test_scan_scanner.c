@@ -10,6 +10,8 @@
 #include <cmocka.h>
 
 #include "dynamics/dynamics.h"
+#include "internal/scan.h"
+#include "internal/tapping.h"
 #include "larger.h"
 #include "nanotouch/advanced/scan.h"
 

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "internal/surface.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "internal/maugis.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"

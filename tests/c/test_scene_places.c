@@ -11,6 +11,9 @@
 
 #include <cmocka.h>
 
+#include "internal/contact.h"
+#include "internal/maugis.h"
+#include "internal/plan.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "internal/contact.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "internal/rheology.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/plan.h"

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "internal/interaction.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/interaction.h"

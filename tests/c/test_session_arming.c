@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "internal/margins.h"
 #include "nanotouch/nanotouch.h"
 #include "session/hazard.h"
 

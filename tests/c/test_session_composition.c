@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include "internal/margins.h"
+#include "internal/session.h"
 #include "session/hazard.h"
 #include "session_fixture.h"
 

@@ -15,8 +15,10 @@
 #include "converter_rig.h"
 #include "host_fixture.h"
 #include "larger.h"
-#include "nanotouch/advanced/hal_spi.h"
-#include "nanotouch/control.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/advanced/hal_linux.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 #include "spidev_calls.h"
 #include "spidev_model.h"
 

@@ -11,6 +11,8 @@
 
 #include "failure_of.h"
 #include "fault_cases.h"
+#include "internal/random.h"
+#include "internal/surface.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 

@@ -8,6 +8,8 @@
 
 #include <cmocka.h>
 
+#include "internal/observer.h"
+#include "internal/session.h"
 #include "larger.h"
 #include "nanotouch/advanced/observer.h"
 #include "session_fixture.h"

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 
 #include "assertions.h"
+#include "internal/observer.h"
 #include "session/frames.h"
 
 /* The system's name for a block of a session. */

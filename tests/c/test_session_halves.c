@@ -11,6 +11,7 @@
 
 #include "core/rig.h"
 #include "device_fixture.h"
+#include "internal/session.h"
 #include "larger.h"
 #include "session_fixture.h"
 

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "internal/margins.h"
 #include "larger.h"
 #include "loop_fixture.h"
 #include "session/hazard.h"

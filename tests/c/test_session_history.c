@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "internal/session.h"
 #include "session_fixture.h"
 
 enum { TICKS = 8000 };

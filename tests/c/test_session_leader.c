@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "internal/session.h"
 #include "larger.h"
 #include "session_fixture.h"
 

@@ -9,6 +9,8 @@
 
 #include "control/margins.h"
 #include "hal/sim/sim.h"
+#include "internal/hazard.h"
+#include "internal/margins.h"
 #include "sideways_draws.h"
 
 #define LANDS 0.05    /* of the factor at the limit: so gently it lands */

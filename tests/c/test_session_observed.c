@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "internal/observer.h"
+#include "internal/session.h"
 #include "nanotouch/advanced/observer.h"
 #include "session_fixture.h"
 

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <time.h>
 
+#include "internal/observer.h"
 #include "session/frames_memory.h" /* one slot of the ring */
 
 typedef struct ends {

@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "internal/session.h"
 #include "larger.h"
 #include "session_fixture.h"
 

@@ -14,8 +14,9 @@
 
 #include <cmocka.h>
 
+#include "internal/session.h"
 #include "larger.h"
-#include "nanotouch/commands.h"
+#include "nanotouch/frames.h"
 #include "session_fixture.h"
 
 enum { MOST = 65536, EVENTS = 64 };

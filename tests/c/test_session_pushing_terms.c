@@ -9,8 +9,10 @@
 
 #include <cmocka.h>
 
+#include "internal/manipulation.h"
+#include "internal/margins.h"
 #include "larger.h"
-#include "nanotouch/guarantee.h"
+#include "nanotouch/margins.h"
 #include "session/state.h"
 
 static nt_terrain *terrain;

@@ -15,6 +15,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "internal/observer.h"
+#include "internal/session.h"
 #include "nanotouch/advanced/observer.h"
 #include "session_fixture.h"
 

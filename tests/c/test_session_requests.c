@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "internal/session.h"
 #include "session_fixture.h"
 
 enum { MOST = 65536, EVENTS = 64, STANDS = 100 };

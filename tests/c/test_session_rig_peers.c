@@ -17,6 +17,7 @@
 
 #include <cmocka.h>
 
+#include "internal/observer.h"
 #include "nanotouch/advanced/observer.h"
 #include "nanotouch/mailbox.h"
 #include "rig_session.h"

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "assertions.h"
+#include "internal/manipulation.h"
+#include "internal/session.h"
 #include "larger.h"
 #include "nanotouch/nanotouch.h"
 #include "session_fixture.h"

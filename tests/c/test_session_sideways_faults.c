@@ -4,6 +4,7 @@
  * holds, whatever the lateral loop does. */
 #include <stdlib.h>
 
+#include "internal/margins.h"
 #include "session/hazard.h"
 #include "sideways_draws.h"
 

@@ -12,8 +12,9 @@
 
 #include "larger.h"
 #include "loop_fixture.h"
-#include "nanotouch/advanced/hazard.h"
 #include "nanotouch/advanced/random.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/plan.h"
 
 static double between(nt_random *random, double low, double high)
 {

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "hal/sim/sim.h"
+#include "internal/tapping.h"
 #include "larger.h"
 #include "session_fixture.h"
 

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "internal/terrain.h"
 #include "larger.h"
 #include "nanotouch/advanced/terrain.h"
 #include "session/terrain.h"

@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "internal/control.h"
 #include "larger.h"
 #include "nanotouch/hal_backend.h"
 #include "session/state.h"

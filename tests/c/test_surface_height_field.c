@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "internal/surface.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/surface.h"
 

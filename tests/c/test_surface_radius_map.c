@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "internal/surface.h"
 #include "larger.h"
 #include "nanotouch/advanced/random.h"
 #include "nanotouch/surface.h"

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/supervisor.h"
+#include "nanotouch/control.h"
 #include "nanotouch/testing.h"
 
 enum { ROWS = 6 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Ends with 0 if the core computes here what it must: the forces of Hertz and DMT differ by 2 pi R w. */
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 

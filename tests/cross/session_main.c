@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "internal/session.h"
 #include "nanotouch/nanotouch.h"
 
 enum { SIZE = 32, BLOCK = 1000, COLUMNS = 5 };

@@ -2,8 +2,9 @@
  * Anything in the shared memory of a running session: its calls end, an observer gets whole frames and a text that
  * ends, and only what a client has posted is taken. */
 #include "input.h"
+#include "internal/observer.h"
 #include "nanotouch/advanced/observer.h"
-#include "nanotouch/commands.h"
+#include "nanotouch/frames.h"
 #include "session/frames_memory.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -2,6 +2,7 @@
  * Any shape, any indentation and force, with adhesion, on any lever: a status, or a finite answer that can be undone.
  */
 #include "input.h"
+#include "internal/geometry.h"
 #include "nanotouch/advanced/geometry.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

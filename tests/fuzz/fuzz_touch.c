@@ -2,9 +2,10 @@
  * Any rig, any settings, any samples: a touch is refused, or each of its commands is finite and within its limits, and
  * no stop is left by itself. */
 #include "input.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/field.h"
-#include "nanotouch/control.h"
-#include "nanotouch/guarantee.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

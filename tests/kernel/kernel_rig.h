@@ -7,10 +7,11 @@
 #include "converter_rig.h"
 #include "host_fixture.h"
 #include "kernel_bus.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/hal_iio.h"
 #include "nanotouch/advanced/hal_linux.h"
-#include "nanotouch/advanced/hal_spi.h"
-#include "nanotouch/control.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/touch.h"
 
 enum { UNDER_WAY = 50, APPROACH = 3000, AFTER = 20 }; /* ticks: before a fault, to the set-point, after a fault */
 

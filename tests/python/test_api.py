@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 from pathlib import Path
 from types import ModuleType
 
@@ -30,6 +31,19 @@ def test_the_listing_is_that_of_the_sources(api: ModuleType, language: str) -> N
     listing = getattr(api, f"{language}_listing")()
     difference = api.changes(ROOT / f"docs/api/{language}.txt", listing)
     assert not difference, f"{ADVICE}\n{difference}"
+
+
+def test_the_c_surface_stays_one_that_can_be_learned() -> None:
+    declared = re.compile(r"^NT_API[^;{}]*?\b(nt_\w+)\s*\(", re.MULTILINE)
+    folder = ROOT / "libnanotouch/include/nanotouch"
+    public, advanced = (
+        {name for header in folder.glob(pattern) for name in declared.findall(header.read_text(encoding="utf-8"))}
+        for pattern in ("*.h", "advanced/*.h")
+    )
+    assert 200 < len(public) <= 300
+    assert len(public) + len(advanced) <= 400
+    assert {"nt_hertz_force", "nt_interaction_eval", "nt_cantilever_step"} <= public  # what users link for
+    assert len(list(folder.rglob("*.h"))) <= 50
 
 
 def test_what_a_header_declares_is_a_line_each(api: ModuleType, tmp_path: Path) -> None:

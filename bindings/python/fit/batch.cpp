@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fit.h, second part: many recorded curves at once.
 #include "batch.h"
+#include "internal/fit.h"
 
 #include <array>
 #include <functional>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fit.h: the extension _fit, apart from _core because of Ceres' licence.
+#include "internal/fit.h"
 #include "nanotouch/fit.h"
 
 #include "../src/chapters.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// fit_viscoelastic.h: whole curves over time.
-#include "nanotouch/fit_viscoelastic.h"
+// fit.h: whole curves over time.
+#include "nanotouch/fit.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fit.h, third part: a fit with what is known beforehand, and what it is worth.
 #include "batch.h"
+#include "internal/fit.h"
 
 namespace
 {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What _core has of margins.h, motor_bound.h and scaling.h. For type checkers: no module at run time."""
+"""What _core has of margins.h, control.h and advanced/control.h. For type checkers: no module at run time."""
 
 from typing import Any
 

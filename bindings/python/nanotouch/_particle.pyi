@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What _core has of particle.h, particles.h, rod.h and pushed.h. For type checkers: no module at run time."""
+"""What _core has of advanced/manipulation.h. For type checkers: no module at run time."""
 
 from numpy import float64
 from numpy.typing import NDArray

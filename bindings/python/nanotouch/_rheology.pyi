@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What _core has of rheology.h and viscoelastic.h. For type checkers: no module at run time."""
+"""What _core has of rheology.h. For type checkers: no module at run time."""
 
 from collections.abc import Sequence
 from typing import Any

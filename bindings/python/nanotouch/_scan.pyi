@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What _core has of tapping.h, flow.h, steady.h and scan.h. For type checkers: no module at run time."""
+"""What _core has of advanced/tapping.h, advanced/scan.h and internal/steady.h. For type checkers: no module at run time."""
 
 from typing import Any
 

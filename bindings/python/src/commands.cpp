@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// commands.h
+// frames.h
 #include <array>
 
 #include "frames.h"

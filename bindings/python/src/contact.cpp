@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "contact_table.h"
+#include "internal/contact.h"
+#include "internal/contact_equilibrium.h"
+#include "internal/maugis.h"
 #include "nanotouch/advanced/contact_equilibrium.h"
 
 // A law made ready for one branch, and its table where the tier asks for one.

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "chapters.h"
+#include "internal/contact.h"
+#include "internal/contact_equilibrium.h"
 #include "nanotouch/advanced/contact_equilibrium.h"
 
 namespace

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "chapters.h"
-#include "nanotouch/advanced/maugis_table.h"
+#include "internal/contact.h"
+#include "nanotouch/advanced/maugis.h"
 
 // Closed forms, and the branch that no table holds, are exact in every tier.
 inline bool needs_table(nt_model model, nt_branch branch, nt_tier tier)

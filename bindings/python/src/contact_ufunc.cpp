@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// contact.h, maugis_table.h as ufuncs: a model, a branch, a tier, and a value of {U, F, k, a} or all four.
-#include <algorithm>
+// contact.h, maugis.h as ufuncs: a model, a branch, a tier, and a value of {U, F, k, a} or all four.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -8,8 +7,9 @@
 #include <vector>
 
 #include "contact_table.h"
-#include "nanotouch/advanced/contact_derivatives.h"
-#include "nanotouch/advanced/maugis_bank.h"
+#include "internal/contact.h"
+#include "internal/contact_derivatives.h"
+#include "internal/maugis.h"
 #include "ufunc.h"
 
 namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// control.h: a law written in Python, the supervisor on plain numbers, and the touch step run again on a recording
+// control.h, touch.h: a law written in Python, the supervisor on plain numbers, and the touch step run again on a
+// recording
 #include "control.h"
+#include "internal/control.h"
 #include "words.h"
 
 static nt_effort effort_of(const py::object &answer)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// converters.h, hal_spi.h, hal_iio.h: a half on converters from a rig file
+// converters.h, hal_linux.h, hal_iio.h: a half on converters from a rig file
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "hal.h"
+#include "internal/converters.h"
 #include "nanotouch/advanced/hal_iio.h"
-#include "nanotouch/advanced/hal_spi.h"
-#ifdef NANOTOUCH_HAS_LINUX
 #include "nanotouch/advanced/hal_linux.h"
+#ifdef NANOTOUCH_HAS_LINUX
 #endif
 
 // --- the tables of a rig file, whose numbers are SI by now ---

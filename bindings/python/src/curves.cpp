@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // curves.h: what a measured force curve shows before any model is fitted
+#include "internal/curves.h"
 #include "chapters.h"
 
 #include <array>

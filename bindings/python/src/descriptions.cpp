@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// scene.h, rig.h, control.h: descriptions, through their tables of fields
+// scene.h, rig.h, settings.h: descriptions, through their tables of fields
 #include "descriptions.h"
 #include "nanotouch/advanced/scan.h"
 

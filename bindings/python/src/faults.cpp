@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// faults.h
+// sim.h
 #include "faults.h"
 
 nt_fault fault_of(const py::handle &entry)

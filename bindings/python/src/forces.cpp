@@ -4,6 +4,7 @@
 #include <deque>
 #include <type_traits>
 
+#include "internal/forces.h"
 #include "ufunc.h"
 
 // One law of the header, what messages call it, its check and its form for arrays.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// friction.h
+// friction.h, advanced/corrugation.h
 #include <cstring>
 
 #include "chapters.h"
+#include "internal/friction.h"
+#include "nanotouch/advanced/corrugation.h"
 
 // Rows of (way x, way y) and (radius, load) from a state (6 numbers, as nt_friction_state): rows of states after each.
 static Array run(const nt_friction &friction, const Array &from, const Array &ways, const Array &contacts)

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "chapters.h"
+#include "internal/geometry.h"
 
 static constexpr double missing = std::numeric_limits<double>::quiet_NaN(); // where there is no solution
 

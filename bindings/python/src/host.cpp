@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // host.h: for the programs beside this package alone
+#include "internal/host.h"
 #include "nanotouch/host.h"
 
 #include <vector>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // interaction.h: one contact, its history and its force
+#include "internal/interaction.h"
 #include "chapters.h"
 
 namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // margins.h
+#include "internal/margins.h"
 #include "control.h"
 #include "descriptions.h"
+#include "internal/control.h"
 
 using Rig = Described<nt_rig>;
 using Settings = Described<nt_settings>;

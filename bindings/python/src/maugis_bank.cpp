@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// maugis_bank.h: many contacts, each its own.
+// maugis.h: many contacts, each its own.
 #include <memory>
 #include <vector>
 
 #include "chapters.h"
+#include "internal/maugis.h"
 
 // A bank and the memory it was made in.
 struct Bank {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// particle.h, particles.h: spheres on a substrate, and the tip that pushes them
+// advanced/manipulation.h: spheres on a substrate, and the tip that pushes them
 #include <array>
 #include <cstring>
 #include <memory>
 
 #include "chapters.h"
+#include "internal/manipulation.h"
 
 static std::unique_ptr<nt_pushing> make(const std::vector<double> &values)
 {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "chapters.h"
+#include "internal/plasticity.h"
 
 static nt_indentation indentation_of(double radius, double modulus, double strength)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// pushed.h: what a tip moves, spheres or a rod, as a session leads it
+// advanced/manipulation.h: what a tip moves, spheres or a rod, as a session leads it
 #include <algorithm>
 #include <array>
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rheology.h, viscoelastic.h
+// rheology.h
 #include <vector>
 
 #include "chapters.h"
+#include "internal/rheology.h"
 
 static nt_rheology rheology_of(int kind, const std::vector<double> &numbers, const std::vector<double> &moduli,
                                const std::vector<double> &times)

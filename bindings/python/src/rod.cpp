@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rod.h: a rod that a tip pushes. A state is one array: pose, tip, force, three energies, then the pulls.
+// advanced/manipulation.h: a rod that a tip pushes. A state is one array: pose, tip, force, three energies, then the
+// pulls.
 #include <array>
 #include <cstring>
 
 #include "chapters.h"
+#include "internal/manipulation.h"
 
 enum { POSE = 0, BASE = 3, TIP = 6, FORCE = 9, ENERGIES = 12, RESISTANCE = 15, OF_STATE = 16 }; // before the pulls
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// scan.h, flow.h: a raster with its z loop, and the slow flow of amplitude and lag
+// scan.h, tapping.h: a raster with its z loop, and the slow flow of amplitude and lag
 #include <atomic>
 
 #include "descriptions.h"
+#include "internal/scan.h"
+#include "internal/tapping.h"
 #include "nanotouch/advanced/scan.h"
 
 namespace

@@ -6,6 +6,9 @@
 #include <tuple>
 
 #include "faults.h"
+#include "internal/hazard.h"
+#include "internal/margins.h"
+#include "internal/session.h"
 
 // Its thread may be in a law or a backend written in Python. If that is who let go of it last, another thread closes
 // it.

@@ -7,6 +7,7 @@
 
 #include "control.h"
 #include "hal.h"
+#include "internal/session.h"
 #include "surface.h"
 
 struct Session {

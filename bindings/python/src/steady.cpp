@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// balance.h, steady.h: steady tapping to a demanded accuracy
-#include "nanotouch/advanced/steady.h"
-#include "nanotouch/advanced/balance.h"
+// internal/balance.h, internal/steady.h: steady tapping to a demanded accuracy
+#include "internal/steady.h"
+#include "internal/balance.h"
 #include "nanotouch/advanced/scan.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // surface.h
 #include "surface.h"
+#include "internal/surface.h"
 
 #include <optional>
 

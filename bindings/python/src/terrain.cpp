@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "descriptions.h"
+#include "internal/terrain.h"
 #include "surface.h"
 
 static std::unique_ptr<Terrain> make(const Described<nt_scene> &scene, const Described<nt_demand> &demand,

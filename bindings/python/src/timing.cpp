@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// timing.h, realtime.h: what this machine keeps
+// timing.h, hal_linux.h: what this machine keeps
 #include <chrono>
 #include <memory>
 #include <string>
 
 #include "hal.h"
-#include "nanotouch/advanced/realtime.h"
+#include "internal/timing.h"
+#include "nanotouch/advanced/hal_linux.h"
 #include "nanotouch/advanced/timing.h"
 
 static py::dict histogram_of(const nt_histogram &histogram)

@@ -2,6 +2,7 @@
  * The loops of plot_31_friction_loop.py, one after the other: way of the support (nm), lateral force (nN). */
 #include <stdio.h>
 
+#include "nanotouch/advanced/contact_equilibrium.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/friction.h"
 
@@ -23,13 +24,15 @@ int main(void)
     const nt_friction friction = {1e9, 0.02, 100e6, 0.1};
     const double loads[] = {-4e-9, 0.0, 20e-9}, turns[] = {0.0, 5e-9, -5e-9, 5e-9};
     const int points[] = {200, 400, 400};
+    nt_contact_law law;
+    if (nt_contact_law_init(&law, NT_JKR, &contact) != NT_OK)
+        return 1;
     for (int i = 0; i < 3; ++i) {
-        double depth, x = 0.0;
-        nt_law_value value;
-        if (nt_jkr_indentation(&contact, loads[i], NT_BRANCH_STABLE, &depth) != NT_OK ||
-            nt_jkr_eval(&contact, depth, NT_BRANCH_STABLE, &value) != NT_OK)
+        double x = 0.0;
+        nt_contact_state pressed;
+        if (nt_contact_law_at_load(&law, loads[i], NT_BRANCH_STABLE, &pressed) != NT_OK)
             return 1;
-        const nt_friction_contact touched = {value.a, nt_compressive_load(NT_JKR, &contact, value)};
+        const nt_friction_contact touched = {pressed.value.a, nt_compressive_load(NT_JKR, &contact, pressed.value)};
         nt_friction_state state = {0};
         for (int k = 0; k < 3; ++k)
             leg(&friction, &state, &touched, &turns[k], points[k], &x);

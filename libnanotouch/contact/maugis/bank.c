@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Makes a bank of tables of Maugis-Dugdale and measures its error: see maugis_bank.h. */
+ * Makes a bank of tables of Maugis-Dugdale and measures its error: see maugis.h. */
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
 
 #include "contact/maugis/bank_panels.h"
 #include "contact/maugis_bank.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
 
 #define BETWEEN_CHECKS 1.25 /* errors between the points that are measured can be a little larger */
 #define AWAY_FROM_FOLD 1e-4 /* reduced indentations */

@@ -16,7 +16,8 @@
 
 #include "contact/maugis/apart.h"
 #include "contact/maugis/cells.h"
-#include "nanotouch/advanced/maugis_bank.h"
+#include "internal/contact.h"
+#include "nanotouch/advanced/maugis.h"
 
 #define NT_BANK_CENTRE 0.93794745721071221163 /* lambda_0 = (9/(16 (1 - 1/pi)))^(1/3) */
 #define NT_BANK_DEEP 1.1                      /* largest indentations: from 1 to this the exact law takes over */

@@ -9,6 +9,8 @@
 #include "contact/block.h"
 #include "contact/maugis/bank.h"
 #include "contact/maugis_bank.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
 
 /* {lambda, d} and the units they are counted in. */
 typedef struct {

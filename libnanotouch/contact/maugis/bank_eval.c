@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Maugis-Dugdale from a bank of tables, reduced: see maugis_bank.h.
+ * Maugis-Dugdale from a bank of tables, reduced: see maugis.h.
  *
  * With U = U_h + P_h Z^2 + E(t, Z), Z^2 = d - start, and G = dE/dd the slope at constant d is
  *     dU/dlambda = U_h,lambda|d + P_h,lambda Z^2 + t_lambda E_t - G start_lambda,
@@ -9,6 +9,8 @@
 
 #include "contact/maugis/bank.h"
 #include "contact/maugis_bank.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
 
 /* A place in the bank. */
 typedef struct {

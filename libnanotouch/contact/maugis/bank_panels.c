@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The panels of a bank of tables of Maugis-Dugdale: see maugis_bank.h.
+ * The panels of a bank of tables of Maugis-Dugdale: see maugis.h.
  *
  * At every border of panels five tables side by side give value and slope over v of all numbers of a cell; both panels
  * that meet there take them. */

@@ -13,6 +13,7 @@
 #include "contact/maugis/newton.h"
 #include "contact/maugis/solve.h"
 #include "core/variants.h"
+#include "internal/contact.h"
 
 #define VARIANTS NT_TARGETS("default", "arch=x86-64-v3", "arch=x86-64-v4")
 #ifdef __GNUC__ /* into each of its variants, or it would have none itself */

@@ -31,6 +31,7 @@
 
 #include "contact/maugis/functions.h"
 #include "core/same_bits.h"
+#include "internal/contact.h"
 
 void nt_maugis_equilibrium_at(double lambda, double y, nt_maugis_equilibrium *point)
 {

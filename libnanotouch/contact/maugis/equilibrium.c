@@ -8,6 +8,8 @@
 #include "contact/maugis/functions.h"
 #include "contact/maugis/solve.h"
 #include "core/roots.h"
+#include "internal/contact.h"
+#include "internal/contact_equilibrium.h"
 #include "nanotouch/advanced/contact_equilibrium.h"
 
 static nt_contact_state state_of(const nt_maugis *maugis, double d, const nt_law_value *reduced)

@@ -13,6 +13,7 @@
 #include "contact/maugis_table.h"
 #include "core/strided.h"
 #include "core/variants.h"
+#include "internal/maugis.h"
 
 #define VARIANTS NT_TARGETS("default", "arch=x86-64-v2", "arch=x86-64-v3", "arch=x86-64-v4")
 

@@ -11,6 +11,7 @@
  *
  * down to c = 0, the onset of attraction at gap h0. Force, stiffness and energy are continuous across a = 0. The
  * displacement fold lies on the contact branch for lambda > 0.9379 and at c* = 8 lambda/(3 pi) otherwise. */
+#include "internal/contact.h"
 #include "nanotouch/contact.h"
 
 #include <math.h>

@@ -10,7 +10,7 @@
 
 #include "contact/maugis/functions.h"
 #include "contact/reduced.h"
-#include "nanotouch/advanced/maugis_table.h"
+#include "nanotouch/advanced/maugis.h"
 
 /* How a force is wanted. */
 typedef struct nt_maugis_query {

@@ -10,6 +10,8 @@
 
 #include "contact/maugis/cells.h"
 #include "contact/maugis_table.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
 #include "nanotouch/material.h"
 
 #define DEFAULT_REACH 1000.0 /* reduced */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Maugis-Dugdale at one indentation, in tiers: see maugis_table.h. */
+ * Maugis-Dugdale at one indentation, in tiers: see maugis.h. */
 #include <math.h>
 #include <stddef.h>
 
@@ -7,6 +7,8 @@
 #include "contact/maugis/solve.h"
 #include "contact/maugis_table.h"
 #include "contact/reduced.h"
+#include "internal/contact.h"
+#include "internal/maugis.h"
 
 /* What the table does not cover, or has in closed form. */
 static nt_status exact_eval(const nt_maugis_table *table, double indentation, nt_branch branch, nt_law_value *value)

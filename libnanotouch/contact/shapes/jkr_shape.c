@@ -18,6 +18,9 @@
 #include "contact/reduced.h"
 #include "core/problem.h"
 #include "core/roots.h"
+#include "internal/contact.h"
+#include "internal/field.h"
+#include "internal/geometry.h"
 #include "nanotouch/advanced/field.h"
 #include "nanotouch/advanced/geometry.h"
 

@@ -10,6 +10,9 @@
 #include "contact/shapes/profile.h"
 #include "core/problem.h"
 #include "core/strided.h"
+#include "internal/contact.h"
+#include "internal/field.h"
+#include "internal/geometry.h"
 #include "nanotouch/advanced/field.h"
 #include "nanotouch/advanced/geometry.h"
 

@@ -2,6 +2,7 @@
  * A sphere on a half-space without adhesion, cheaply: a power series where it converges, the exact law beyond. */
 #include <math.h>
 
+#include "internal/geometry.h"
 #include "nanotouch/advanced/geometry.h"
 
 /* delta/R = t^2 (1 + t^2/3 + t^4/5 + ...) inverted: t = sqrt(delta/R) Sum_n c_n (delta/R)^n; F and U are integrals of

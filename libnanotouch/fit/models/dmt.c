@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Derjaguin, Muller and Toporov, J. Colloid Interface Sci. 53 (1975) 314, as Maugis has it: Hertz less a constant. */
 #include "fit/models/paraboloid.h"
+#include "internal/contact.h"
 
 static nt_status prepare(const nt_fit_options *options, const double *value, nt_fit_branch *branch)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Hertz, J. reine angew. Math. 92 (1881) 156: a paraboloid without adhesion, s = delta. */
 #include "fit/models/paraboloid.h"
+#include "internal/contact.h"
 
 static nt_status prepare(const nt_fit_options *options, const double *value, nt_fit_branch *branch)
 {

@@ -2,6 +2,7 @@
  * Johnson, Kendall and Roberts, Proc. R. Soc. Lond. A 324 (1971) 301: s = sqrt(a), P = s^6 - sqrt(6) s^3,
  * d = s^4 - 4 s/sqrt(6) (contact/jkr.c), load fold at s^3 = sqrt(6)/2, displacement fold at s^3 = 1/sqrt(6). */
 #include "fit/models/paraboloid.h"
+#include "internal/contact.h"
 #include "nanotouch/material.h"
 
 #define SQRT_6 2.44948974278317809820

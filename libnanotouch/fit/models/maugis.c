@@ -8,6 +8,7 @@
  * whose displacement fold is at c = 8 lambda/(3 pi). */
 #include "contact/maugis/functions.h"
 #include "fit/models/paraboloid.h"
+#include "internal/contact.h"
 #include "nanotouch/material.h"
 
 static nt_status prepare(const nt_fit_options *options, const double *value, nt_fit_branch *branch)

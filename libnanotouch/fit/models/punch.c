@@ -2,6 +2,7 @@
  * Sneddon's flat punch, Int. J. Eng. Sci. 3 (1965) 47, whose radius is the tip's: s = delta. The force rises from the
  * contact point with a kink, so that contact point and modulus show apart. */
 #include "fit/models/row.h"
+#include "internal/contact.h"
 
 static nt_status prepare(const nt_fit_options *options, const double *value, nt_fit_branch *branch)
 {

@@ -5,6 +5,7 @@
 #define NANOTOUCH_FIT_MODELS_SHARP_H
 
 #include "fit/models/row.h"
+#include "internal/contact.h"
 #include "nanotouch/advanced/geometry.h"
 #include "nanotouch/material.h"
 

@@ -2,6 +2,7 @@
  * Sneddon's sphere, Int. J. Eng. Sci. 3 (1965) 47, the whole of it and not its paraboloid: s = delta. At a = R/2 Hertz
  * presses 2.8 % harder. By the series of geometry.h, off by 1e-10 of F at delta = R/3 and by 7e-7 at delta = R. */
 #include "fit/models/paraboloid.h"
+#include "internal/geometry.h"
 #include "nanotouch/advanced/geometry.h"
 
 static nt_status prepare(const nt_fit_options *options, const double *value, nt_fit_branch *branch)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Codes, voltages and frames of the chips in the tables. */
-#include "nanotouch/advanced/chips.h"
+#include "internal/converters.h"
+#include "nanotouch/advanced/converters.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to the library: what chips.h does not promise. */
+ * Private to the library: what the public header does not have. */
 #ifndef NANOTOUCH_HAL_CHIPS_CHIPS_PRIVATE_H
 #define NANOTOUCH_HAL_CHIPS_CHIPS_PRIVATE_H
 
-#include "nanotouch/advanced/chips.h"
+#include "nanotouch/advanced/converters.h"
 
 /* The voltage of a code [V]. Real-time safe. */
 NT_REALTIME double nt_chip_volts(const nt_chip *chip, const nt_chip_span *span, int32_t code);

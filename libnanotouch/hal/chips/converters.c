@@ -2,6 +2,7 @@
  * A half on converters as a backend. A tick that does not work (short, stuck, damaged, not what was written) is read as
  * invalid, with nothing of it used: HOLD, and in the second tick RETRACT. NT_CONVERTER_BAD of them, or a bus that is
  * gone, are a lost device. */
+#include "internal/converters.h"
 #include "nanotouch/advanced/converters.h"
 
 #include <math.h>

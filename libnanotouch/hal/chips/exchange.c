@@ -6,6 +6,7 @@
 
 #include "hal/chips/chips.h"
 #include "hal/chips/half.h"
+#include "internal/converters.h"
 
 nt_status nt_converter_half_send(nt_converter_half *c, int converter, nt_chip_frame *frames, int count)
 {

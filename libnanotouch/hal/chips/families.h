@@ -3,7 +3,7 @@
 #ifndef HAL_CHIPS_FAMILIES_H
 #define HAL_CHIPS_FAMILIES_H
 
-#include "nanotouch/advanced/chips.h"
+#include "nanotouch/advanced/converters.h"
 
 enum { NT_CHIPS_AD5791 = 3, NT_CHIPS_AD5686 = 3, NT_CHIPS_AD7606 = 3, NT_CHIPS_AD7768 = 1 };
 

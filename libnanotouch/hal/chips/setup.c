@@ -7,6 +7,7 @@
 #include "core/problem.h"
 #include "hal/chips/chips.h"
 #include "hal/chips/half.h"
+#include "internal/converters.h"
 
 #define LEAST_STEPS 16.0 /* of a converter within a range */
 

@@ -4,7 +4,7 @@
 #define _GNU_SOURCE /* processors of a thread */
 #endif
 
-#include "nanotouch/advanced/realtime.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 #if defined(__linux__)
 

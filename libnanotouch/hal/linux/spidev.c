@@ -4,7 +4,7 @@
 #define _DEFAULT_SOURCE /* flock */
 #endif
 
-#include "nanotouch/advanced/hal_spi.h"
+#include "nanotouch/advanced/hal_linux.h"
 
 #if defined(__linux__)
 

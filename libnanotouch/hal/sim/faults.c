@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Faults of the simulated rig: a schedule, and what each kind does to a sample, an actuator or the surface. Numbers of
  * rows are those of the fault table in docs/evidence/safety.md. */
-#include "nanotouch/advanced/faults.h"
+#include "nanotouch/advanced/sim.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "internal/random.h"
 #include "parts.h"
 
 #define FIRST_CLEAR_DISTANCE 1e-9 /* a rig starts at least this clear of the surface [m] */

@@ -11,6 +11,7 @@
 #include "core/same_bits.h"
 #include "dynamics/dynamics.h"
 #include "hal/sim/sim.h"
+#include "internal/rig.h"
 #include "parts.h"
 
 static void init_sensors(nt_sim_master *master)

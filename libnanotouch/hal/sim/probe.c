@@ -8,6 +8,8 @@
 #include "core/rig.h"
 #include "core/same_bits.h"
 #include "hal/sim/sim.h"
+#include "internal/dynamics.h"
+#include "internal/rheology.h"
 #include "parts.h"
 #include "plasticity/dents.h"
 #include "rheology/loop.h"

@@ -10,6 +10,7 @@
 #include "core/rig.h"
 #include "dynamics/dynamics.h"
 #include "hal/sim/sim.h"
+#include "internal/rig.h"
 #include "parts.h"
 
 #define SUBSTEP 0.25 /* of the dynamic cantilever [rad] */

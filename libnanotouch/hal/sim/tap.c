@@ -5,6 +5,7 @@
 
 #include "core/same_bits.h"
 #include "dynamics/dynamics.h"
+#include "internal/tapping.h"
 #include "nanotouch/material.h"
 #include "parts.h"
 #include "scan/flow.h"

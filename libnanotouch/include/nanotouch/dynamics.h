@@ -42,13 +42,6 @@ NT_API nt_cantilever_state nt_cantilever_at(double base_height);
 
 /* --- probe: quasi-static cantilever (Eq. 2-3 at rest): k_c zeta = F(z_t), z_t = z_b + zeta cos(alpha) --- */
 
-/* Moves the base to base_height [m] and lets the tip settle: downhill from where it is to the next stable equilibrium,
- * through jump-in and snap-off. At most about 400 evaluations, usually 2 to 4. NT_OK; NT_E_ARGUMENT (spring constant or
- * field length not positive, state untouched); NT_E_NO_CONVERGENCE, or NT_E_NOT_FINITE where the field is, with the
- * state left at the last place the tip passed. Residual in info: the force out of balance, over K length. */
-NT_API NT_REALTIME nt_status nt_cantilever_settle(nt_cantilever_state *state, const nt_probe *probe,
-                                                  const nt_force_field *field, double base_height, nt_solve_info *info);
-
 /* What the quasi-static model leaves out, while the tip does not jump. */
 typedef struct nt_cantilever_lag {
     double force;    /* largest error of the force, by speed and acceleration of the base [N] */

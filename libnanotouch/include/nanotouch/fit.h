@@ -26,6 +26,7 @@
 #include "nanotouch/advanced/fit_models.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/curves.h"
+#include "nanotouch/rheology.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -99,8 +100,6 @@ typedef struct nt_fit_options {
 NT_API nt_fit_options nt_fit_defaults(nt_fit_model model);
 /* The same for a law of the user's own (borrowed), whose parameters are free and start where it says. */
 NT_API nt_fit_options nt_fit_defaults_for(const nt_fit_law *law);
-/* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE / NT_E_ARGUMENT with the offending field in *problem (NULL allowed). */
-NT_API nt_status nt_fit_check(const nt_fit_options *options, nt_problem *problem);
 /* A parameter of the model that options name; its name is NULL if the model has none in that place. */
 NT_API nt_fit_quantity nt_fit_quantity_of(const nt_fit_options *options, nt_fit_parameter parameter);
 
@@ -157,9 +156,6 @@ typedef struct nt_fit_point {
  * as in nt_fit_result. */
 NT_API nt_status nt_fit_model_n(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
                                 const nt_fit_data *data, nt_fit_point *point);
-/* X at which the cantilever tears the tip off [m]; NT_E_UNSUPPORTED without spring constant or adhesion. */
-NT_API nt_status nt_fit_tear_position(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
-                                      double *position);
 
 /* What a fit left over, for its rating. */
 typedef struct nt_fit_rated {
@@ -175,18 +171,6 @@ NT_API double nt_fit_rating(const nt_fit_rated *rated);
 #define NT_FIT_GOOD 4.5 /* below, a fit is a misfit if its residuals are no noise either */
 
 /* ---- A fit with what is known beforehand, and what it is worth ---- */
-
-/* What is known of the points; all 0: no more than the points say themselves. */
-typedef struct nt_fit_known {
-    double noise;                     /* of the force from point to point, standard deviation [N] */
-    nt_curve_noise free;              /* white and 1/f noise of the free cantilever [N^2] */
-    double baseline_position;         /* X where level and tilt of the baseline are not correlated [m] */
-    double level_sigma, tilt_sigma;   /* their standard uncertainties [N], [N/m]; 0: exact */
-    double tear_position, tear_sigma; /* X at which the tip was torn off [m], as in options; sigma 0: nowhere */
-    double sensitivity_sigma;         /* of the deflection, relative [-]; 0: exact */
-    int fit_offset;                   /* 1: the force offset is free; 0: known as well as the baseline is */
-    int held[NT_FIT_PARAMETERS];      /* 1: of sensitivity, offset, tilt, stays at its value in options */
-} nt_fit_known;
 
 /* What the user of a fit has to know, one bit each. */
 typedef enum nt_fit_flag {
@@ -209,41 +193,6 @@ typedef enum nt_fit_flag {
     NT_FIT_ADHESIVE = 1 << 24,    /* the tip snaps in, or is torn off a contact */
     NT_FIT_HYSTERESIS = 1 << 25   /* the retraction returns another work than the approach puts in */
 } nt_fit_flag;
-
-typedef struct nt_fit_solution {
-    nt_fit_options options; /* with which it was fitted in the end: noise, tear, and what is known as data */
-    nt_fit_result fit;      /* identifiable 0 also where calibration or law are in doubt */
-    long count;             /* of points that were fitted: the last ones, close to the tear, may be left out */
-    double rating;          /* nt_fit_rating [-] */
-    unsigned flags;         /* nt_fit_flag */
-    int exact;              /* 1: the law leaves nothing but rounding */
-    double half_modulus[2]; /* E* that the shallow and the deep half of the contact ask for [Pa]; NaN where untold */
-    double power[2]; /* of the indentation with which the force rises, and its sigma [-]; of laws without adhesion; NaN
-                        where untold */
-    double any_sensitivity, any_modulus, any_rms; /* fitted with any sensitivity [-], [Pa], [N]; NaN without need */
-} nt_fit_solution;
-/* Fits with the noise of the free cantilever, then once more with the scatter that is left where that is more: a law
- * that does not describe the points gets wide sigmas instead of a bent calibration. Points from the deepest outwards,
- * where they were torn off. As nt_fit_run. */
-NT_API nt_status nt_fit_solve(const nt_fit_options *options, const nt_fit_known *known, const nt_fit_data *data,
-                              nt_fit_solution *solution, nt_problem *problem);
-
-typedef enum nt_fit_calibration {
-    NT_FIT_SPRING_CONSTANT,
-    NT_FIT_RADIUS,
-    NT_FIT_HALF_ANGLE,
-    NT_FIT_THICKNESS
-} nt_fit_calibration;
-/* d value/d ln of what is calibrated (of the half angle: by the angle [rad]): differences of whole fits. */
-NT_API nt_status nt_fit_shift(const nt_fit_solution *solution, const nt_fit_data *data, nt_fit_calibration changed,
-                              double shift[NT_FIT_PARAMETERS]);
-/* The least and the most that a positive parameter can be (95 %): where chi^2, all others fitted again, has risen by
- * 3.84; 0 and infinity where it does not. */
-NT_API nt_status nt_fit_bounds(const nt_fit_solution *solution, const nt_fit_data *data, nt_fit_parameter parameter,
-                               double bounds[2]);
-/* How far before its tear the model is only a straight continuation [m]. */
-NT_API nt_status nt_fit_steep_width(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
-                                    double *width);
 
 /* ---- Curves as they were recorded, many at once: baseline, what is fitted of each, the fit ---- */
 
@@ -276,24 +225,6 @@ typedef struct nt_fit_reading {
     int ruptures;             /* how many tear off on the retraction */
 } nt_fit_reading;
 
-/* 1 where the baseline's points scatter by more than four times the noise [N], and a contact that begins in their outer
- * half, over a level line, describes the whole branch within half of that: by so much *further out [m] than the
- * baseline ends, with so much *left over, RMS [N]. 0: the branch has a free part. */
-NT_API int nt_fit_begins_in_contact(const nt_curve_branch *branch, double noise, double spring_constant,
-                                    double *further, double *left);
-
-/* What both branches of a recorded curve say against a law without adhesion that was fitted to its approach. */
-typedef struct nt_fit_branches {
-    const nt_curve_branch *approach, *retract;
-    int ruptures;           /* of the retraction */
-    double spring_constant; /* [N/m] */
-    double contact_point;   /* fitted, as z of the base [m] */
-    double power_sigma;     /* of the solution [-]; NaN: unknown */
-} nt_fit_branches;
-/* NT_FIT_ADHESIVE, NT_FIT_HYSTERESIS; returned: which part of the work of the approach the retraction keeps back [-];
- * NaN where one of them shows no contact. */
-NT_API unsigned nt_fit_branch_doubts(const nt_fit_branches *branches, double *kept_back);
-
 typedef struct nt_fit_outcome {
     nt_status status;       /* NT_OK; NT_E_NOT_FINITE, NT_E_RANGE (values or too few points); or as nt_fit_run */
     nt_problem problem;     /* what is wrong with the curve; field NULL where that says no more than the status */
@@ -312,6 +243,75 @@ typedef struct nt_fit_curves {
 } nt_fit_curves;
 /* Fits all of them as told above, by one recipe. */
 NT_API nt_status nt_fit_batch(const nt_fit_recipe *recipe, const nt_fit_curves *curves, nt_fit_outcome *outcome);
+
+/* --- Fitting a viscoelastic contact (rheology.h) to a whole recorded curve: approach, pauses and retraction in one
+ * least-squares fit, by analytic derivatives.
+ *
+ *     force = level + tilt (X - X_b) + drag v h_d/(h_d + h) + F(X - z_0, t)
+ *
+ * X is the position of the base, towards the sample, v its speed, h the tip's height over first touch z_0 (0 in
+ * contact). Points are binned: less after a turn and around first touch, where the force bends; the path is not.
+ *
+ * Thread-safe, no state between calls, no exception escapes. Not real-time (heap). --- */
+
+/* The first NT_RHEOLOGY_PARAMETERS are those of the rheology, in the order of nt_rheology_parameter_count(). */
+enum {
+    NT_FIT_PATH_CONTACT = NT_RHEOLOGY_PARAMETERS, /* z_0 [m] */
+    NT_FIT_PATH_LEVEL,                            /* [N] */
+    NT_FIT_PATH_TILT,                             /* [N/m] */
+    NT_FIT_PATH_DRAG,                             /* at the surface [N s/m] */
+    NT_FIT_PATH_PARAMETERS
+};
+
+/* A curve as it was recorded, in the order of time. */
+typedef struct nt_fit_path {
+    const double *times;         /* increasing [s] */
+    const double *positions;     /* X; the first ones out of contact [m] */
+    const double *forces;        /* + repulsive [N] */
+    const unsigned char *fitted; /* 0: the point is on the path alone; NULL: all are fitted */
+    long count;
+    const long *starts; /* index of the first point of each segment (approach, pause, retraction); starts[0] = 0 */
+    int segments;       /* 1 or more */
+} nt_fit_path;
+
+typedef struct nt_fit_path_options {
+    nt_viscoelastic contact;              /* tip, layer, lever; rheology: its kind and number of arms, and those of its
+                                           * parameters that are held */
+    double start[NT_FIT_PATH_PARAMETERS]; /* where the fit begins; NaN: guessed [SI] */
+    unsigned held;                        /* bit p: parameter p stays at its start */
+    double noise;                         /* standard deviation of the force from point to point, > 0 [N] */
+    double tilt_position;                 /* X_b [m] */
+    double drag_height;                   /* h_d; 0: drag does not depend on the height [m] */
+    int max_iterations;
+} nt_fit_path_options;
+/* A power law under a paraboloid; all starts NaN but level, tilt and drag (0), nothing held, 60 iterations. */
+NT_API nt_fit_path_options nt_fit_path_defaults(void);
+
+typedef struct nt_fit_path_result {
+    double value[NT_FIT_PATH_PARAMETERS]; /* [SI]; NaN for those that the kind does not have */
+    double sigma[NT_FIT_PATH_PARAMETERS]; /* standard uncertainty; 0: held; infinity: the curve does not say */
+    double covariance[NT_FIT_PATH_PARAMETERS][NT_FIT_PATH_PARAMETERS]; /* [SI], 0 if held; of an exponent at 0 the
+                                                                        * others' are those with it held there */
+    double free_exponent; /* beta where it could fall below 0, by the last step: value[1] unless that is 0 */
+    double chi_square;    /* over the noise, of the bins */
+    long bins;            /* that were fitted */
+    double correlation;   /* of the residuals: by how much sigma^2 was raised for it; 1: none evident [-] */
+    double peak;          /* max of F [N] */
+    double indentation;   /* max of delta [m] */
+    double contact_time;  /* from first touch to the peak of the force [s] */
+    double kernel_error;  /* as nt_viscoelastic_result */
+    int by_springs;       /* 1: the contact shrank and grew again */
+    int iterations, converged;
+    unsigned held; /* as options.held, with drag where the speed does not change its sign */
+} nt_fit_path_result;
+
+/* Fits. NT_E_RANGE, NT_E_NOT_FINITE or NT_E_ARGUMENT with a problem (NULL allowed); NT_E_NO_CONVERGENCE where no law of
+ * this kind comes near; NT_E_NO_MEMORY. */
+NT_API nt_status nt_fit_path_run(const nt_fit_path_options *options, const nt_fit_path *path,
+                                 nt_fit_path_result *result, nt_problem *problem);
+/* The fitted force, level, tilt and drag in it [N], and the indentation [m], at every point; either may be NULL. */
+NT_API nt_status nt_fit_path_model(const nt_fit_path_options *options, const nt_fit_path_result *found,
+                                   const nt_fit_path *path, double *forces, double *indentations);
 
 #ifdef __cplusplus
 }

@@ -26,12 +26,8 @@ typedef struct nt_vdw {
 NT_API nt_status nt_vdw_check(const nt_vdw *vdw, nt_problem *problem);
 /* Exact Hamaker sphere: F = -2 H R^3/(3 s^2 (s + 2R)^2), s = max(h, a0) + b/2. */
 NT_API nt_law_value nt_vdw_eval(const nt_vdw *vdw, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_vdw_eval_n(const nt_vdw *vdw, const nt_strided *arrays);
 /* The paper's Derjaguin form -H R/(6 s^2), valid for s << R: +36 % at h = 10 nm for R = 30 nm (erratum E1). */
 NT_API nt_law_value nt_vdw_derjaguin_eval(const nt_vdw *vdw, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_vdw_derjaguin_eval_n(const nt_vdw *vdw, const nt_strided *arrays);
 
 /* What the half-angle theta of a tip's cone comes to, once for many evaluations (`_eval_with`). */
 typedef struct nt_tip_angle {
@@ -52,8 +48,6 @@ typedef struct nt_vdw_tip {
 NT_API nt_status nt_vdw_tip_check(const nt_vdw_tip *tip, nt_problem *problem);
 /* {U, F, k} of the whole tip at a gap [m]; a cone of height 0 is nt_vdw_eval. */
 NT_API nt_law_value nt_vdw_tip_eval(const nt_vdw_tip *tip, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_vdw_tip_eval_n(const nt_vdw_tip *tip, const nt_strided *arrays);
 
 /* --- Capillary meniscus of a water film --- */
 
@@ -68,8 +62,6 @@ NT_API nt_status nt_capillary_check(const nt_capillary *capillary, nt_problem *p
 /* The force of a standing bridge, F = -4 pi gamma_L R [1 - (h - 2e)/(2 r1)], the bracket clamped to [0, 1] (erratum
  * E3): constant below 2e, 0 beyond 2e + 2 r1. */
 NT_API nt_law_value nt_capillary_eval(const nt_capillary *capillary, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_capillary_eval_n(const nt_capillary *capillary, const nt_strided *arrays);
 
 /* Whether there is a bridge is history: it forms on approach where the films touch, at 2e [m], ... */
 NT_API double nt_capillary_forms_at(const nt_capillary *capillary);
@@ -77,8 +69,6 @@ NT_API double nt_capillary_forms_at(const nt_capillary *capillary);
 NT_API double nt_capillary_ruptures_at(const nt_capillary *capillary);
 /* Whether a bridge stands (1) or not (0) at a gap, after it did or did not before; NaN changes nothing. */
 NT_API int nt_capillary_advance(const nt_capillary *capillary, int bridged, double gap);
-/* The force along a path: gaps in order, *bridged before the first and, on return, after the last. */
-NT_API void nt_capillary_trace_n(const nt_capillary *capillary, int *bridged, const nt_strided *arrays);
 
 /* Kelvin radius of a meniscus: -gamma_L V_m/(R_gas T ln(RH)), relative_humidity in (0, 1), temperature [K]. */
 NT_API double nt_kelvin_radius(double surface_tension, double molar_volume, double temperature,
@@ -96,8 +86,6 @@ typedef struct nt_electrostatic {
 NT_API nt_status nt_electrostatic_check(const nt_electrostatic *electrostatic, nt_problem *problem);
 /* F = -pi eps0 U^2 R^2/(h (h + R)) (Hudlet 1998; within 5.2 % of the exact image series for 0.2..100 nm, R = 30 nm). */
 NT_API nt_law_value nt_electrostatic_eval(const nt_electrostatic *electrostatic, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_electrostatic_eval_n(const nt_electrostatic *electrostatic, const nt_strided *arrays);
 
 /* Parallel plates, the paper's form: F = -eps0 S U^2/(2 h^2). The paper's S = 4 pi R r1 is the area of a meniscus and
  * makes it 10.8 times too large at a0, 0.28 times at 10 nm (erratum E5); it is right for an area S that is flat. */
@@ -110,8 +98,6 @@ typedef struct nt_electrostatic_plate {
 NT_API nt_status nt_electrostatic_plate_check(const nt_electrostatic_plate *plate, nt_problem *problem);
 /* {U, F, k} of the plates at a gap [m]. */
 NT_API nt_law_value nt_electrostatic_plate_eval(const nt_electrostatic_plate *plate, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_electrostatic_plate_eval_n(const nt_electrostatic_plate *plate, const nt_strided *arrays);
 
 /* Apex sphere and cone of a tip, in place of the sphere (Hudlet 1998, over the finite height of the cone). */
 typedef struct nt_electrostatic_tip {
@@ -125,8 +111,6 @@ typedef struct nt_electrostatic_tip {
 NT_API nt_status nt_electrostatic_tip_check(const nt_electrostatic_tip *tip, nt_problem *problem);
 /* {U, F, k} of sphere and cone at a gap [m]. */
 NT_API nt_law_value nt_electrostatic_tip_eval(const nt_electrostatic_tip *tip, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_electrostatic_tip_eval_n(const nt_electrostatic_tip *tip, const nt_strided *arrays);
 
 /* Lever, to be added: a tilted plate in the field of the wedge that it makes with the plane. At gap h of the apex, with
  * D = tip_height + h, F = -eps0 U^2 w l cos(b) (sin(b)/b)^2/(2 D (D + l sin(b))). Edges are neglected. */
@@ -142,8 +126,6 @@ typedef struct nt_electrostatic_lever {
 NT_API nt_status nt_electrostatic_lever_check(const nt_electrostatic_lever *lever, nt_problem *problem);
 /* {U, F, k} of the lever at a gap of the apex [m]. */
 NT_API nt_law_value nt_electrostatic_lever_eval(const nt_electrostatic_lever *lever, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_electrostatic_lever_eval_n(const nt_electrostatic_lever *lever, const nt_strided *arrays);
 
 /* A charge trapped on the sample, under the apex of a grounded tip. */
 typedef struct nt_point_charge {
@@ -155,8 +137,6 @@ typedef struct nt_point_charge {
 NT_API nt_status nt_point_charge_check(const nt_point_charge *charge, nt_problem *problem);
 /* Image charge in a sphere (Thomson, exact): F = -q^2 R (R + h)/(4 pi eps0 (h (h + 2R))^2). */
 NT_API nt_law_value nt_point_charge_eval(const nt_point_charge *charge, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_point_charge_eval_n(const nt_point_charge *charge, const nt_strided *arrays);
 
 /* --- Lennard-Jones: attraction and repulsion of rigid surfaces --- */
 
@@ -170,8 +150,6 @@ typedef struct nt_lennard_jones {
 NT_API nt_status nt_lennard_jones_check(const nt_lennard_jones *lennard_jones, nt_problem *problem);
 /* F = 2 pi R w/3 [(z0/h)^8 - 4 (z0/h)^2], h between the surface atoms: -2 pi w R at z0 (Bradley), 0 at 0.794 z0. */
 NT_API nt_law_value nt_lennard_jones_eval(const nt_lennard_jones *lennard_jones, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_lennard_jones_eval_n(const nt_lennard_jones *lennard_jones, const nt_strided *arrays);
 
 /* --- In liquid --- */
 
@@ -188,12 +166,8 @@ typedef struct nt_double_layer {
 NT_API nt_status nt_double_layer_check(const nt_double_layer *layer, nt_problem *problem);
 /* The surfaces keep their potential (Hogg, Healy, Fuerstenau 1966). */
 NT_API nt_law_value nt_double_layer_potential_eval(const nt_double_layer *layer, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_double_layer_potential_eval_n(const nt_double_layer *layer, const nt_strided *arrays);
 /* The surfaces keep their charge (Wiese, Healy 1970); sigma = eps psi/debye_length. */
 NT_API nt_law_value nt_double_layer_charge_eval(const nt_double_layer *layer, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_double_layer_charge_eval_n(const nt_double_layer *layer, const nt_strided *arrays);
 /* Debye length [m]: sqrt(eps0 eps_r k T/(2 N_A e^2 I)), ionic_strength I [mol/m^3] (1 mM is 1), temperature [K];
  * NaN unless all are above 0. */
 NT_API double nt_debye_length(double ionic_strength, double relative_permittivity, double temperature);
@@ -211,8 +185,6 @@ typedef struct nt_hydration {
 NT_API nt_status nt_hydration_check(const nt_hydration *hydration, nt_problem *problem);
 /* {U, F, k} at a gap [m]. */
 NT_API nt_law_value nt_hydration_eval(const nt_hydration *hydration, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_hydration_eval_n(const nt_hydration *hydration, const nt_strided *arrays);
 
 /* Steric force of polymer brushes (Alexander, de Gennes), a scaling law: F = 2 pi R Int_h^T p,
  * p = kT/s^3 [(T/h)^(9/4) - (h/T)^(3/4)]; 0 beyond T. */
@@ -227,12 +199,8 @@ typedef struct nt_steric {
 NT_API nt_status nt_steric_check(const nt_steric *steric, nt_problem *problem);
 /* {U, F, k} at a gap [m]; all 0 beyond T. */
 NT_API nt_law_value nt_steric_eval(const nt_steric *steric, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_steric_eval_n(const nt_steric *steric, const nt_strided *arrays);
 /* Its usual approximation p = 100 kT/s^3 exp(-2 pi h/T): p within 24 % for 0.2 < h/T < 0.9. */
 NT_API nt_law_value nt_steric_exponential_eval(const nt_steric *steric, double gap);
-/* The same over arrays of gaps [m]. */
-NT_API void nt_steric_exponential_eval_n(const nt_steric *steric, const nt_strided *arrays);
 
 #ifdef __cplusplus
 }

@@ -22,10 +22,6 @@ typedef struct nt_friction {
     double shear_strength;          /* tau0, of the contact area [Pa] */
     double coefficient;             /* alpha, of the load inside the contact [-] */
 } nt_friction;
-/* Silicon on silicon (G* = 15.2 GPa), rigid lever, tau0 = 100 MPa, alpha = 0.1. */
-NT_API nt_friction nt_friction_defaults(void);
-/* The table of its fields, with units and ranges; *count (NULL allowed) its length. */
-NT_API const nt_field *nt_friction_fields(int *count);
 /* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE with the first offending field in *problem (NULL allowed). */
 NT_API nt_status nt_friction_check(const nt_friction *friction, nt_problem *problem);
 
@@ -62,47 +58,6 @@ typedef struct nt_friction_state {
  * NT_OK; NT_E_NOT_FINITE or NT_E_RANGE (radius or load below 0) with the state left alone. */
 NT_API NT_REALTIME nt_status nt_friction_advance(const nt_friction *friction, nt_friction_state *state,
                                                  const nt_friction_contact *contact, const double way[2]);
-
-/* Many steps: contacts[i] and ways[i][0..1] in; the state after each step to states[i]. Stops at the first step that
- * is refused; the states from there on are left alone. */
-typedef struct nt_friction_path {
-    const nt_friction_contact *contacts;
-    const double (*ways)[2]; /* [m] */
-    nt_friction_state *states;
-    long count;
-} nt_friction_path;
-/* From *state, which is left where the last step ended. */
-NT_API nt_status nt_friction_run_n(const nt_friction *friction, nt_friction_state *state, const nt_friction_path *path);
-
-/* --- Corrugation (Prandtl 1928, Tomlinson 1929): one tip on a spring over an atomic lattice,
- *     V = -E0/2 cos(2 pi x/a) + k/2 (x - X)^2, gamma dx/dt = -dV/dx (+ thermal noise). --- */
-typedef struct nt_corrugation {
-    double energy;      /* E0, from valley to top [J] */
-    double period;      /* a, of the lattice [m] */
-    double stiffness;   /* k, of contact and lever: nt_friction_stiffness [N/m] */
-    double damping;     /* gamma, of the tip that slides [N s/m] */
-    double temperature; /* T, 0: athermal [K] */
-} nt_corrugation;
-/* E0 = 0.4 eV, a = 0.5 nm, k = 1 N/m, gamma = 1e-6 N s/m, T = 0 (NaCl(001) in its range). */
-NT_API nt_corrugation nt_corrugation_defaults(void);
-/* The table of its fields, with units and ranges; *count (NULL allowed) its length. */
-NT_API const nt_field *nt_corrugation_fields(int *count);
-/* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE with the first offending field in *problem (NULL allowed). */
-NT_API nt_status nt_corrugation_check(const nt_corrugation *corrugation, nt_problem *problem);
-/* eta = 2 pi^2 E0/(k a^2) [-]. Above 1 the tip sticks and slips; at 1 and below it slides without friction as v -> 0.
- */
-NT_API double nt_corrugation_onset(const nt_corrugation *corrugation);
-/* pi E0/a, the largest force of the lattice [N]. */
-NT_API double nt_corrugation_largest_force(const nt_corrugation *corrugation);
-/* Mean force on the support [N] at a speed v > 0 [m/s], once the motion repeats; gamma v/(pi E0/a) 1e-12 .. 10, eta <=
- * 20. T = 0: the equation of motion, by an L-stable Rosenbrock method, within 1e-3 (1e-6 pi E0/a at least). T > 0: hops
- * between wells, forwards and backwards, at Kramers' rates with their integrals; within 2 % of Langevin's equation for
- * eta >= 3, kT/E0 1/500 .. 1/13 and gamma v/(pi E0/a) <= 0.1 (2 kT/E0)^1.5, where heat and not the speed decides when
- * the tip slips (docs/friction.md). NT_E_RANGE outside of these, with what is, in *problem (NULL allowed);
- * NT_E_NOT_FINITE, NT_E_NO_CONVERGENCE. Takes some 20 ms with T > 0. */
-NT_API nt_status nt_corrugation_mean_force(const nt_corrugation *corrugation, double speed, double *force,
-                                           nt_problem *problem);
-#define NT_CORRUGATION_ONSET_MAX 20.0
 
 #ifdef __cplusplus
 }

@@ -3,7 +3,8 @@
  * about them, once for every view (docs/host.md). A view sends what is asked and draws what is told; it knows no name
  * of a task, a preset or a slider. The host opens no file and no session: who opens one gives it here.
  *
- * One host per session at a time, one thread. What is told is JSON; NT_HOST_VERSION changes when a key does. */
+ * One host per session at a time, one thread. What is told is JSON; NT_HOST_VERSION changes when a
+ * key changes its meaning or goes; new keys may come. */
 #ifndef NANOTOUCH_HOST_H
 #define NANOTOUCH_HOST_H
 
@@ -56,8 +57,6 @@ NT_API int nt_host_sliders(const nt_scene *scene, const nt_rig *rig, const nt_se
 NT_API double nt_host_slider_at(const nt_host_slider *slider, double place);
 /* And back: where a value lies, 0 .. 1. */
 NT_API double nt_host_slider_place(const nt_host_slider *slider, double value);
-/* A number of so many digits with its unit under a prefix, "-" where it is not known. Returns text. */
-NT_API const char *nt_host_digits(double value, const char *unit, int count, char *text, size_t size);
 /* What holds of a session, for a line about its state. */
 typedef struct nt_host_bounds {
     double bound;  /* of the plan [-] */
@@ -112,20 +111,6 @@ typedef struct nt_proxy {
 } nt_proxy;
 /* How long the master takes to a new place [s]. */
 #define NT_PROXY_GLIDE 0.03
-/* A hand that rests at the start. */
-NT_API nt_proxy nt_proxy_begin(const nt_proxy_facts *facts);
-/* By lengths at the tip [m], the third one + down; 0 where the force limit has cut it. */
-NT_API int nt_proxy_move(nt_proxy *hand, const double way[NT_AXES], const nt_frame *frame);
-/* Down by steps of the wheel, longer ones far from the surface; up if below 0. */
-NT_API int nt_proxy_wheel(nt_proxy *hand, double steps, const nt_frame *frame);
-/* Draws back to the clearance over the surface, and by what adhesion stretches the springs before it lets go. */
-NT_API void nt_proxy_lift(nt_proxy *hand, const nt_frame *frame);
-/* What an arm does by itself in a time [s]: it presses, gives way, and stays by a stopped tip. */
-NT_API void nt_proxy_follow(nt_proxy *hand, const nt_frame *frame, double elapsed);
-/* 1 where it moves by itself now. */
-NT_API int nt_proxy_acts(const nt_proxy *hand, const nt_frame *frame);
-/* Begins anew where master and tip are, as after a rewind. */
-NT_API void nt_proxy_resume(nt_proxy *hand, const nt_frame *frame);
 
 /* --- the host --- */
 

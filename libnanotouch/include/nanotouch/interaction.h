@@ -76,9 +76,6 @@ NT_API void nt_interaction_eval_n(const nt_plan *plan, const nt_interaction_stat
                                   const nt_interaction_arrays *arrays);
 /* One contact along a path of poses: advance, then evaluate, at each. */
 NT_API void nt_interaction_run_n(const nt_plan *plan, nt_interaction_state *state, const nt_interaction_arrays *arrays);
-/* The same with friction: advance, slide, then evaluate, with the friction force in Fx and Fy. */
-NT_API void nt_interaction_slide_n(const nt_plan *plan, nt_interaction_state *state, nt_slide *slide,
-                                   const nt_interaction_arrays *arrays);
 /* Many contacts of one plan, each with its own state (contiguous): advance, then evaluate, each at its pose. */
 NT_API void nt_interaction_step_n(const nt_plan *plan, nt_interaction_state *states,
                                   const nt_interaction_arrays *arrays);

@@ -75,11 +75,6 @@ typedef struct nt_sideways_margins {
     double coupled_margin;  /* all axes together: R1, or the exact limit while it sticks and while it slips, whichever
                                is less; never above those of each [-] */
 } nt_sideways_margins;
-/* The least of margin, exact limit and coupled margin: "R1 sideways", "exact sideways", "all axes". */
-NT_API nt_verdict nt_verdict_sideways(const nt_sideways_margins *margins);
-/* By how much more of its force along z a master of one axis feels, by its projection: a factor on alpha_f, >= 1. */
-NT_API double nt_margins_projected(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
-                                   const nt_sideways_contact *contact);
 
 /* What stirs the hand where nothing moves: steps of converters and noise of sensors. */
 typedef enum nt_ripple_source {
@@ -131,26 +126,47 @@ typedef struct nt_loop_response {
 /* frequency: above 0, below half the rate [Hz]. NaN beyond. */
 NT_API nt_loop_response nt_margins_response(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
                                             double frequency);
-/* Where |Z| leaves +-3 dB of alpha_f alpha_p k_eff/w, the contact as it should be felt [Hz]; half the rate if nowhere
- * below; 0 without a contact. */
-NT_API double nt_margins_bandwidth(const nt_rig *rig, const nt_gains *gains, double contact_stiffness);
-
-/* How many steps a session has to work with (Eq. 20, 21 in SI). */
-typedef struct nt_resolution {
-    double slave_step;   /* delta_p: of the stage, command or read-out, the coarser [m] */
-    double slave_force;  /* delta_f: of the probe's noise, peak to peak, or of one step of the stage, the coarser [N] */
-    double slave_steps;  /* N_p over the path [-] */
-    double force_steps;  /* N_f over the probe's range [-] */
-    double master_steps; /* N_p of the master [-] */
-    double gauge_steps;  /* N_f of the gauge; 0 without one [-] */
-    double master_travel; /* what of the master's travel the path needs [m] */
-    double master_force;  /* alpha_f delta_f: one step of force at the hand [N] */
-} nt_resolution;
-/* slave_path: L + delta_max [m]. */
-NT_API nt_resolution nt_resolution_compute(const nt_rig *rig, const nt_gains *gains, double slave_path);
 
 /* Largest loop stiffness of master and zero-order hold alone, without delay: the exact (Jury) limit [N/m]. */
 NT_API double nt_margins_jury_limit(const nt_master *master, double period);
+
+/* --- The hard guarantee, to be read before arming: whatever the operator does, force and indentation stay below a
+ * limit and a bound on how far it can be overshot before the reaction shows; and another bound for when one thing
+ * fails. --- */
+
+#define NT_GUARANTEE_SIGMAS 3.0 /* of the calibration */
+
+/* What may fail, one at a time. */
+typedef enum nt_failure {
+    NT_FAILURE_READ_OUT, /* the deflection is read with a wrong gain, or its zero drifts away */
+    NT_FAILURE_SENSOR,   /* the deflection does not change any more */
+    NT_FAILURE_SLIP,     /* the stage sticks and then slips, or the surface jumps */
+    NT_FAILURE_STAGE,    /* the stage goes too far, too fast or the wrong way */
+    NT_FAILURES
+} nt_failure;
+/* "deflection read wrong", ...; "" for none. */
+NT_API const char *nt_failure_name(nt_failure failure);
+
+typedef struct nt_guarantee {
+    double reaction_time;        /* from the sample that shows it until the stage turns [s] */
+    double speed;                /* at which tip and surface come closer, at most [m/s] */
+    double calibration;          /* of the limit, if k_c and sensitivity are off by 3 sigma [N] */
+    double motion;               /* stage and surface come closer meanwhile, times stiffness [N] */
+    double ringing;              /* the stage's resonance, excited by its own commands and their steps [N] */
+    double snap_in;              /* what is left of the swing of a jump when the force is there [N] */
+    double arrival;              /* a snap-in alone presses with this, limit or not [N] */
+    double noise;                /* 6 sigma and a step of the reading [N] */
+    double tare;                 /* the sample's force at the start, which the tare takes off [N] */
+    double force;                /* limit and all six: never more than this on the sample, either sign [N] */
+    double zero_drift;           /* and this more for each second since the tare [N/s] */
+    double failure[NT_FAILURES]; /* what each adds; infinite where nothing would show it [N] */
+    double with_failure;         /* force and the largest of them [N] */
+    double indentation;          /* never more than this past first touch, at rest sideways [m] */
+    double lateral_force;        /* never more than this on the sample in x and y [N] */
+    double help_time;            /* the stage can lift from the drift of the frame for this long [s] ... */
+    double frame_drift;          /* ... a stop that cannot lift is pressed by this much more in a second [N/s] */
+    int moves_sideways; /* 0: the stage has one axis, and all this holds at the place where the session starts */
+} nt_guarantee;
 
 #ifdef __cplusplus
 }

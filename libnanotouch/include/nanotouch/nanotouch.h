@@ -3,7 +3,6 @@
 #ifndef NANOTOUCH_NANOTOUCH_H
 #define NANOTOUCH_NANOTOUCH_H
 
-#include "nanotouch/commands.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/control.h"
 #include "nanotouch/curves.h"
@@ -14,6 +13,7 @@
 #include "nanotouch/hal.h"
 #include "nanotouch/hal_backend.h"
 #include "nanotouch/interaction.h"
+#include "nanotouch/margins.h"
 #include "nanotouch/material.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/rheology.h"
@@ -22,9 +22,8 @@
 #include "nanotouch/session.h"
 #include "nanotouch/status.h"
 #include "nanotouch/surface.h"
+#include "nanotouch/touch.h"
 #include "nanotouch/types.h"
 #include "nanotouch/version.h"
-#include "nanotouch/viscoelastic.h"
-#include "nanotouch/viscoelastic_loop.h"
 
 #endif

@@ -5,15 +5,13 @@
 #ifndef NANOTOUCH_PLAN_H
 #define NANOTOUCH_PLAN_H
 
-#include "nanotouch/advanced/maugis_bank.h"
-#include "nanotouch/advanced/maugis_table.h"
+#include "nanotouch/advanced/maugis.h"
 #include "nanotouch/advanced/plasticity.h"
 #include "nanotouch/friction.h"
+#include "nanotouch/rheology.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"
-#include "nanotouch/terms.h"
-#include "nanotouch/viscoelastic_loop.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -132,8 +130,8 @@ typedef struct nt_plan_friction {
 /* What a session computes in place of the contact, because it depends on all that was done before. */
 typedef enum nt_plan_history {
     NT_HISTORY_NONE,
-    NT_HISTORY_DENTS,  /* a sample that yields (dents.h) */
-    NT_HISTORY_RELAXES /* a sample that relaxes (viscoelastic_loop.h) */
+    NT_HISTORY_DENTS,  /* a sample that yields (advanced/plasticity.h) */
+    NT_HISTORY_RELAXES /* a sample that relaxes (rheology.h) */
 } nt_plan_history;
 
 /* Of a scene with a rheology that is not elastic: whether time matters. */
@@ -243,17 +241,6 @@ enum { NT_CORNER_BLUNT = 1, NT_CORNER_STIFF = 2, NT_CORNER_STICKY = 4, NT_CORNER
  * *problem (NULL allowed) names the field of scene, demand or probe, or what the demand would have to be: NT_E_RANGE
  * with "demand.relative_accuracy" and the best bound as its minimum, or "demand.budget" and the smallest cost. */
 NT_API nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
-
-/* The same in two steps, from the same inputs, for a bank that is made between them: nt_plan_begin finds the contact
- * and does not read inputs->bank, nt_plan_decide chooses. Each fails as nt_plan_make. */
-NT_API nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
-/* The second step; of a plan that nt_plan_begin has left with NT_OK. */
-NT_API nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
-/* Of a plan that was begun: 1 and the options of the bank that serves its contact at every place of the surface, 0 if
- * none could be of use (a flat, or adhesion that is none or has no range). The range of lambda is that of all
- * places, and the indentation that of the largest load at the sharpest place, in decades with a
- * factor of 1.5 to spare; twice as fine below a demand of 1e-4. */
-NT_API int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options);
 
 /* A copy that stands by itself: its pointers lead into the copy. Both share scene, bank and surface. */
 NT_API void nt_plan_copy(nt_plan *copy, const nt_plan *plan);

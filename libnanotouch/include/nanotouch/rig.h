@@ -49,16 +49,16 @@ typedef struct nt_stage {
 
 /* 1-degree-of-freedom haptic master (paper, Eq. 12). */
 typedef struct nt_master {
-    double mass;             /* m_m [kg] */
-    double damping;          /* b_m [N s/m] */
-    double friction;         /* Coulomb friction, sliding and sticking alike [N] */
-    double travel;           /* x_m runs over -travel/2 .. +travel/2 [m] */
-    double resolution;       /* step of the position sensor [m] */
-    double max_force;        /* motor limit, +- [N] */
-    double max_speed;        /* of the hand that holds it: the force fades fast enough for this (motor_bound.h) [m/s] */
-    int gauge;               /* "no|yes": an operator force sensor (strain gauge); without, f_m is not measured */
-    double gauge_range;      /* strain gauge, +- [N] */
-    double gauge_noise;      /* standard deviation of the strain gauge [N] */
+    double mass;        /* m_m [kg] */
+    double damping;     /* b_m [N s/m] */
+    double friction;    /* Coulomb friction, sliding and sticking alike [N] */
+    double travel;      /* x_m runs over -travel/2 .. +travel/2 [m] */
+    double resolution;  /* step of the position sensor [m] */
+    double max_force;   /* motor limit, +- [N] */
+    double max_speed;   /* of the hand that holds it: the force fades fast enough for this (nt_motor_bound) [m/s] */
+    int gauge;          /* "no|yes": an operator force sensor (strain gauge); without, f_m is not measured */
+    double gauge_range; /* strain gauge, +- [N] */
+    double gauge_noise; /* standard deviation of the strain gauge [N] */
     double gauge_resolution; /* step of the strain gauge [N] */
     int motor;               /* "no|yes": it can push back; without, it is a position device, as a mouse is */
     double rate;             /* of its own measurements, 0: that of the loop [Hz] */
@@ -100,10 +100,6 @@ NT_API nt_rig nt_rig_defaults(void);
 NT_API nt_status nt_rig_check(const nt_rig *rig, nt_problem *problem);
 /* The table behind the check: every field of nt_rig with unit, range and meaning; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_rig_fields(int *count);
-
-/* The same rig with the steps that it really has: of every sensor, and of the stage's command, its own or that of a
- * converter's bits over its range, the coarser. */
-NT_API nt_rig nt_rig_with_steps(const nt_rig *rig);
 
 /* The stage without its own servo: steps of 1 nm, hysteresis 15 %, creep 1 % per decade (usual for PZT, not in the
  * paper); and behind its servo: steps of 10 nm, neither (Sec. IV-C). */

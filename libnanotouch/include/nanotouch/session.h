@@ -5,12 +5,13 @@
 #ifndef NANOTOUCH_SESSION_H
 #define NANOTOUCH_SESSION_H
 
-#include "nanotouch/advanced/hazard.h"
+#include "nanotouch/advanced/control.h"
 #include "nanotouch/advanced/sim.h"
 #include "nanotouch/advanced/terrain.h"
-#include "nanotouch/commands.h"
-#include "nanotouch/control.h"
+#include "nanotouch/frames.h"
+#include "nanotouch/margins.h"
 #include "nanotouch/plan.h"
+#include "nanotouch/touch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -40,7 +41,7 @@ typedef struct nt_session_setup {
     long ring_capacity;    /* records held between two reads, rounded up to a power of two; 0: nothing is recorded */
     double minimum_margin; /* refuse to open below this stability margin; 0: never, and a law of one's own is not tried
                               [-] */
-    int preflight;         /* 1: a real stage goes to the start, tare, sign test (preflight.h); 0: it jumps there */
+    int preflight;         /* 1: a real stage goes to the start, tare, sign test (nt_preflight); 0: it jumps there */
     nt_probe_model probe_model;
     double substep;                /* of the dynamic cantilever, 0: 0.25 [rad] */
     const nt_particles *particles; /* that can be laid on a flat at z = 0, and are pushed by this tip; simulated, with a
@@ -141,8 +142,6 @@ NT_API void nt_session_close(nt_session *session);
  * which runs. NT_E_NOT_FINITE, NT_E_RANGE with the field in *problem (NULL allowed); NT_E_UNSUPPORTED for a force or a
  * position where the hand is real; NT_E_CAPACITY where records are kept and 4096 events wait to be read. */
 NT_API NT_REALTIME nt_status nt_session_aim(nt_session *session, const nt_input *input, nt_problem *problem);
-/* Would it be taken? */
-NT_API nt_status nt_session_check_input(const nt_session *session, const nt_input *input, nt_problem *problem);
 /* Presses or releases the emergency stop. Any thread may call it, a signal handler too, while another advances; it
  * never waits. Each press shows in the next sample, even if the release comes before it. */
 NT_API NT_REALTIME void nt_session_emergency_stop(nt_session *session, int pressed);
@@ -176,8 +175,8 @@ NT_API nt_status nt_session_lay(nt_session *session, int number, const double pl
 /* Lays the rod at rest at x, y [m] and an angle of its axis from x [rad]; it is taken away from where it was. Fails as
  * nt_session_lay: NT_E_UNSUPPORTED where the setup has no rod; NT_E_STATE where the tip touches it, here or there. */
 NT_API nt_status nt_session_lay_rod(nt_session *session, const double pose[3]);
-/* Adds a fault of the simulated halves; its start counts from the session's first tick (faults.h). NT_E_UNSUPPORTED
- * where none is simulated, NT_E_STATE while the session runs in its thread. */
+/* Adds a fault of the simulated halves; its start counts from the session's first tick (advanced/sim.h).
+ * NT_E_UNSUPPORTED where none is simulated, NT_E_STATE while the session runs in its thread. */
 NT_API nt_status nt_session_inject(nt_session *session, const nt_fault *fault);
 
 /* --- run, as fast as it goes --- */
@@ -229,10 +228,6 @@ typedef struct nt_progress {
 NT_API nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks);
 /* Ends the thread between two ticks and waits for it. What it ended by itself with, NT_OK otherwise. */
 NT_API nt_status nt_session_halt(nt_session *session);
-/* 1 where the session itself has called, while it runs or prepares a request: a half, a law, who takes its lines. From
- * there nothing that runs, asks, starts, halts, publishes or copies is done (NT_E_STATE), and it is not closed. Inputs,
- * emergency stop, pause, steps and speed are taken. */
-NT_API int nt_session_runs_here(const nt_session *session);
 /* Free and wall pace; from any thread. Speed: session time over time on the clock, 1e-3 .. 1e3; below 1 is slow motion.
  */
 NT_API nt_status nt_session_pause(nt_session *session, int paused);
@@ -301,13 +296,8 @@ NT_API const nt_capabilities *nt_session_capabilities(const nt_session *session,
 NT_API const nt_session_setup *nt_session_setup_of(const nt_session *session); /* as it runs now */
 /* The plan of the forces that it computes. */
 NT_API const nt_plan *nt_session_plan(const nt_session *session);
-/* The terrain that this plan borrows from, for a caller that keeps the plan beyond the next change: it stays until the
- * caller closes it with nt_terrain_close. It may itself borrow from the session: of no use after nt_session_close. */
-NT_API nt_terrain *nt_session_hold_terrain(nt_session *session);
 /* The touch step: law, observer, supervisor and limits as they run. */
 NT_API const nt_touch *nt_session_touch(const nt_session *session);
-/* Its state after the last tick: targets, scales, reasons. */
-NT_API const nt_touch_state *nt_session_touch_state(const nt_session *session);
 /* The margins in this mode and at these scales; 1 is the limit. */
 NT_API nt_margins nt_session_margins(const nt_session *session);
 /* Those in x and y, and of all axes together; infinite where no motor pushes back sideways. */
@@ -322,10 +312,6 @@ NT_API nt_guarantee nt_session_guarantee(const nt_session *session);
 NT_API nt_motor_bound nt_session_motor_bound(const nt_session *session);
 /* What preflight has taken off the sensors. */
 NT_API nt_tare nt_session_tare(const nt_session *session);
-/* Height of the cantilever base at x_s = 0 [m]: z_b = start_height - x_s. NaN where the slave is not simulated. */
-NT_API double nt_session_start_height(const nt_session *session);
-/* x_m at the start [m]: the stage shall be at alpha_p (x_m - master_start). */
-NT_API double nt_session_master_start(const nt_session *session);
 
 #ifdef __cplusplus
 }

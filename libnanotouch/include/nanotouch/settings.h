@@ -31,7 +31,7 @@ struct nt_signals;
 struct nt_effort;
 struct nt_gains;
 
-/* Which law (servo.h). All zero: the default one. */
+/* Which law (control.h). All zero: the default one. */
 typedef struct nt_control {
     nt_control_choice choice;
     struct nt_effort (*law)(void *context, const struct nt_gains *gains, const struct nt_signals *signals); /* OWN */
@@ -106,8 +106,6 @@ typedef struct nt_settings {
 /* 10 kHz, K_f = 2, scaling by the heuristic rule for a slave path of 0.4 um, limits inside the rig's ranges; the
  * impedance law if the rig has no gauge. */
 NT_API nt_settings nt_settings_defaults(const nt_rig *rig);
-/* Time constants of the lever's amplitude, Q/(pi f_0), and of the lock-in amplifier together [s]. */
-NT_API double nt_tap_lag(const nt_rig *rig, const nt_tap *tap);
 /* Lowers what would press harder than a load [N], as the largest one of a scene: the force limit to it, the set-point
  * to half of it. Infinity lowers nothing. */
 NT_API void nt_settings_keep_to(nt_settings *settings, double load);

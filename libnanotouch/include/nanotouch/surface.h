@@ -21,13 +21,6 @@ typedef struct nt_height_map {
     double dx, dy;         /* pixel size [m], 1e-12 .. 1e-3 */
 } nt_height_map;
 
-/* Height and its derivatives at a point. */
-typedef struct nt_surface_value {
-    double z;             /* height [m] */
-    double zx, zy;        /* slopes [-] */
-    double zxx, zxy, zyy; /* curvatures [1/m] */
-} nt_surface_value;
-
 /* Without the curvatures, which a force does not need. */
 typedef struct nt_height_value {
     double z;      /* height [m] */
@@ -51,9 +44,6 @@ NT_API nt_status nt_height_map_check(const nt_height_map *map, nt_problem *probl
 NT_API nt_status nt_surface_init(nt_surface *surface, const nt_height_map *map, double *coefficients);
 /* A flat at z = 0 without limits. */
 NT_API nt_surface nt_surface_flat(void);
-/* Value at a point. Outside the map the border continues level (slopes across it 0): nt_surface_contains() tells.
- * NaN in, NaN out. Real-time safe. */
-NT_API NT_REALTIME nt_surface_value nt_surface_eval(const nt_surface *surface, double x, double y);
 /* Height and slopes alone, at half the cost. */
 NT_API NT_REALTIME nt_height_value nt_surface_height(const nt_surface *surface, double x, double y);
 /* 1 if (x, y) lies on the map (always for a flat). */
@@ -79,8 +69,6 @@ typedef struct nt_radius_limits {
     double minimum; /* 1e-3 .. 1 [-] */
     double maximum; /* 1 .. 1e3 [-] */
 } nt_radius_limits;
-/* 0.1 and 3. */
-NT_API nt_radius_limits nt_radius_limits_defaults(void);
 
 /* The effective radius over a map. Immutable after nt_radius_map_init; the coefficients stay the caller's. */
 typedef struct nt_radius_map {
@@ -101,8 +89,6 @@ typedef struct nt_radius_value {
  * with its neighbours' (1/36, 4/36 .. 16/36). Not real-time. */
 NT_API nt_status nt_radius_map_init(nt_radius_map *map, const nt_surface *dilated, double tip_radius,
                                     const nt_radius_limits *limits, double *coefficients);
-/* Effective radius and its slope at a point; beyond the map as nt_surface_eval. NaN in, NaN out. Real-time safe. */
-NT_API NT_REALTIME nt_radius_value nt_radius_map_eval(const nt_radius_map *map, double x, double y);
 
 /* --- What the sample is made of at each place (docs/surface.md) --- */
 

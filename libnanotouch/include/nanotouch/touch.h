@@ -4,12 +4,9 @@
 #ifndef NANOTOUCH_TOUCH_H
 #define NANOTOUCH_TOUCH_H
 
-#include "nanotouch/advanced/passivity.h"
-#include "nanotouch/advanced/stage_loop.h"
-#include "nanotouch/scaling.h"
-#include "nanotouch/servo.h"
+#include "nanotouch/advanced/control.h"
+#include "nanotouch/control.h"
 #include "nanotouch/settings.h"
-#include "nanotouch/supervisor.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -32,7 +29,7 @@ typedef struct nt_touch {
     double stage_step;      /* largest, in a period [m] */
     double stage_end;       /* of its travel, either way [m] */
     double motor_step;      /* largest, in a period [N] */
-    double fade_product;    /* after an event a motor force F is gone within this over |F| (motor_bound.h) [N s] */
+    double fade_product;    /* after an event a motor force F is gone within this over |F| (nt_motor_bound) [N s] */
     double drive_amplitude; /* of mode tapping, 0 in the others [m] */
     double drive_frequency; /* the same [Hz] */
     double spike;           /* a deflection that jumps by more than this may be a wrong reading [m] */
@@ -113,7 +110,7 @@ NT_API NT_REALTIME nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state 
 NT_API nt_status nt_touch_arm(nt_touch_state *state, int confirmed);
 /* Changes the mode, where the stage stands; the force fades in again. NT_E_ARGUMENT if there is no such mode. */
 NT_API NT_REALTIME nt_status nt_touch_set_mode(nt_touch_state *state, nt_mode mode);
-/* Changes the scales while running: without a bump, over ramp_time, and as far as it is passive (scaling.h). Not
+/* Changes the scales while running: without a bump, over ramp_time, and as far as it is passive (nt_rescale). Not
  * finite or not positive: refused. Whether the loop is still stable is for the caller to know (margins.h). */
 NT_API NT_REALTIME nt_status nt_touch_rescale(nt_touch_state *state, const nt_scaling *scaling);
 /* Open: master and stage are uncoupled, the stage stays, the force fades out. Closed: re-indexed, it fades in. */

@@ -10,6 +10,7 @@
  * fold it is counted from there, so that no jump gives out energy. */
 #include <math.h>
 
+#include "internal/contact.h"
 #include "scene/deformation/deform.h"
 #include "scene/terms/term.h"
 

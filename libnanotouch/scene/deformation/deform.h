@@ -8,6 +8,7 @@
 #ifndef NANOTOUCH_SCENE_DEFORM_H
 #define NANOTOUCH_SCENE_DEFORM_H
 
+#include "internal/maugis.h"
 #include "nanotouch/plan.h"
 #include "scene/parts.h"
 

@@ -8,6 +8,7 @@
  * from there, all is smooth: rigid laws grow as R, and those of one exponential are one curve of h - l/2 ln R. */
 #include <math.h>
 
+#include "internal/maugis.h"
 #include "scene/deformation/deform.h"
 
 enum { POINTS = 4 };

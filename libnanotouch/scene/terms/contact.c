@@ -8,6 +8,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "internal/contact.h"
+#include "internal/maugis.h"
 #include "scene/scene.h"
 #include "scene/terms/term.h"
 

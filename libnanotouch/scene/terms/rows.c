@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The table of all laws, made from the list in terms.h: a law without its row does not link. */
+ * The table of all laws, made from the list in scene.h: a law without its row does not link. */
 #include <math.h>
 #include <stddef.h>
 

@@ -39,7 +39,7 @@ typedef struct nt_term_row {
     double (*hold)(const void *law);
     /* Whose |F| and |k| no larger gap exceeds. NULL: the law itself. */
     nt_law_value (*limit)(const void *law, double gap);
-    /* Two flats (terms.h), where words.has_pressure. */
+    /* Two flats (scene.h), where words.has_pressure. */
     nt_pressure (*pressure)(const void *law, double gap);
 
     /* What it is in the sentence of a refusal, as what presses or pulls; of a law with a pressure. */

@@ -22,11 +22,6 @@ typedef struct nt_contact_state {
     nt_law_value value;
 } nt_contact_state;
 
-/* {U, F, k, a} and the indentation at a force [N], as nt_maugis_indentation: STABLE is the branch above the load fold,
- * UNSTABLE the one below it, which grips can still hold in part. */
-NT_API nt_status nt_maugis_at_load(const nt_maugis *maugis, double force, nt_branch branch, nt_contact_state *state);
-/* At a contact radius >= 0 [m]: every radius occurs once on the contact branch. */
-NT_API nt_status nt_maugis_at_radius(const nt_maugis *maugis, double radius, nt_contact_state *state);
 /* At a force, of every law. DMT and Hertz have no unstable branch: NT_E_NO_SOLUTION. */
 NT_API nt_status nt_contact_law_at_load(const nt_contact_law *law, double force, nt_branch branch,
                                         nt_contact_state *state);
@@ -40,20 +35,6 @@ typedef struct nt_jump {
 } nt_jump;
 /* Of every law. Hertz does not jump: everything is at its first touch. NT_E_RANGE for a spring < 0. */
 NT_API nt_status nt_contact_law_jump(const nt_contact_law *law, double spring, nt_jump *jump);
-
-/* One slow movement of the base, and the force at each of its places. */
-typedef struct nt_ramp {
-    double spring;       /* k_c [N/m], > 0 */
-    nt_branch branch;    /* APPROACH: free until the jump-in; STABLE: a retraction, in contact until the pull-off */
-    const double *stage; /* stage indentations D [m], in any order; monotonic ones are found soonest */
-    double *force;       /* out [N]; 0 where the tip is free */
-    long count;
-} nt_ramp;
-/* The stable equilibrium under the spring at each D: a quasi-static force curve. Within 1e-9 of the largest force of
- * the branch of D = delta + F(delta)/k_c, except where the tip is about to be pulled off, where F is a square root of
- * the distance and a rounding of D counts as its square root. NT_E_NOT_FINITE for a place that is not finite,
- * NT_E_RANGE for a spring, NT_E_ARGUMENT for another branch; `force` is then undefined. */
-NT_API nt_status nt_contact_law_ramp(const nt_contact_law *law, const nt_ramp *ramp);
 
 #ifdef __cplusplus
 }

@@ -28,10 +28,6 @@ typedef struct nt_field {
 /* Named by its path. */
 #define NT_FIELD(type, path, ...) NT_FIELD_NAMED(#path, type, path, __VA_ARGS__)
 
-/* Checks the fields of *object in the order of the table. NT_OK; NT_E_NOT_FINITE (NaN or infinite) or NT_E_RANGE with
- * the first offending field in *problem (NULL allowed); NT_E_ARGUMENT if fields or object is NULL. Thread-safe. */
-NT_API nt_status nt_field_check(const nt_field *fields, int count, const void *object, nt_problem *problem);
-
 /* Reads and writes one field of an object; no range check. */
 NT_API double nt_field_get(const nt_field *field, const void *object);
 /* Writes a value in the field's SI unit, of a choice its number. It is not checked: that is for the object's own check,

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Safety lines of a real rig on a Linux machine's GPIO: emergency stop and limit switch in, laser enable, watchdog
- * and conversion start out.
- * Built into nanotouch::linux on libgpiod 2.1 or newer. One thread per handle; nothing here is real-time safe by proof:
- * reading costs up to four system calls, which do not wait. */
-#ifndef NANOTOUCH_HAL_LINUX_H
-#define NANOTOUCH_HAL_LINUX_H
+ * A real rig on a Linux machine: safety lines on GPIO, buses of SPI, and a thread in real time.
+ *
+ * Safety lines: emergency stop and limit switch in, laser enable, watchdog and conversion start out. Built into
+ * nanotouch::linux on libgpiod 2.1 or newer. One thread per handle; nothing here is real-time safe by proof: reading
+ * costs up to four system calls, which do not wait. */
+#ifndef NANOTOUCH_ADVANCED_HAL_LINUX_H
+#define NANOTOUCH_ADVANCED_HAL_LINUX_H
 
 #include <stdint.h>
 
 #include "nanotouch/advanced/converters.h"
+#include "nanotouch/status.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -60,6 +62,78 @@ typedef struct nt_gpio_state {
 /* The lines of a half on converters: what is not wired is left alone. A lost input is an emergency stop; a lost laser
  * or watchdog line counts in lost_outputs of nt_gpio_state. */
 NT_API nt_converter_lines nt_gpio_lines(nt_gpio *gpio);
+
+/* --- The SPI buses of a Linux machine through the kernel's spidev, as the exchange of a half on converters
+ * (converters.h). One thread per handle. A message costs one system call, which waits for the bus alone. --- */
+
+enum {
+    NT_SPI_MESSAGE = 64, /* bytes of a message at most: a Raspberry Pi 5 fails above (longer ones are chained) */
+    NT_SPI_ATTEMPTS = 3, /* of a message that signals interrupt */
+    NT_SPI_REASON = 256  /* characters of why a device cannot be opened, with the final 0 */
+};
+
+/* A chip's place. */
+typedef struct nt_spi_device {
+    const char *path; /* "/dev/spidev0.0" */
+    uint32_t mode;    /* clock polarity << 1 | phase: nt_chip.spi_mode */
+    double clock;     /* [Hz], 1e3 .. 1e8 */
+} nt_spi_device;
+
+/* The system calls, so that a test can stand in between. Each returns what the call returns, or -errno. */
+typedef struct nt_spi_calls {
+    int (*open)(void *context, const char *path); /* for this program alone: -EBUSY if another one has it */
+    int (*control)(void *context, int file, unsigned long request, void *argument);
+    void (*close)(void *context, int file);
+    void *context;
+} nt_spi_calls;
+
+typedef struct nt_spi {
+    nt_spi_calls calls;
+    int count;
+    int file[NT_CONVERTERS]; /* -1: not open */
+    uint32_t clock[NT_CONVERTERS];
+    uint64_t messages, interrupted, short_ones, refused; /* so far [-]; short: of another length than was asked for */
+    int error;                                           /* errno of the last one that was refused */
+} nt_spi;
+
+/* Opens the devices in the order of a half's converters, sets mode, 8 bits and clock, and reads them back. calls: NULL
+ * for the kernel's. NT_E_ARGUMENT, NT_E_RANGE; NT_E_DEVICE with why in `reason` (NULL is allowed), and nothing is open
+ * then; NT_E_UNSUPPORTED without calls where there is no spidev. */
+NT_API nt_status nt_spi_open(nt_spi *spi, const nt_spi_device *devices, int count, const nt_spi_calls *calls,
+                             char reason[NT_SPI_REASON]);
+/* As nt_exchange wants it; the context is the nt_spi. EIO and the like are NT_E_STATE: this tick did not work. ENODEV,
+ * ENXIO, ESHUTDOWN and EBADF are NT_E_DEVICE: the bus is gone. The kernel returns the whole length whatever went
+ * through, and leaves bytes of the message before where nothing came: a short transfer is for read-back and check sum
+ * to find. Any other length is no answer of the kernel's, and NT_E_STATE. */
+NT_API NT_REALTIME nt_status nt_spi_exchange(void *spi, int converter, const nt_transfer *transfers, int count);
+/* Accepts NULL and one that is closed. */
+NT_API void nt_spi_close(nt_spi *spi);
+
+/* --- What a Linux machine grants the thread of a loop: a real-time priority, memory that stays, a processor of its
+ * own, no deep sleep. Each refusal is told in words; the loop may run without. NT_E_UNSUPPORTED elsewhere. --- */
+
+typedef struct nt_realtime_wish {
+    int priority;    /* of SCHED_FIFO: 1 .. 99; 0: not wished */
+    int processor;   /* to stay on: 0 ..; -1: not wished */
+    int locks;       /* memory is locked (mlockall), and some stack touched */
+    int stays_awake; /* no deep idle state: /dev/cpu_dma_latency */
+} nt_realtime_wish;
+/* Priority 80, any processor, locked, awake. */
+NT_API nt_realtime_wish nt_realtime_wish_defaults(void);
+
+enum { NT_REALTIME_PRIORITY = 1, NT_REALTIME_PROCESSOR = 2, NT_REALTIME_MEMORY = 4, NT_REALTIME_AWAKE = 8 };
+
+typedef struct nt_realtime {
+    unsigned wished, granted; /* of the bits above */
+    char refused[640];        /* a line for each wish that was refused, with why and what would help; "" if none */
+    int awake_file;           /* -1: none */
+    int policy, priority;     /* of the thread before */
+} nt_realtime;
+
+/* Asks for the calling thread. NT_OK whatever was granted; NT_E_RANGE for a priority or a processor that cannot be. */
+NT_API nt_status nt_realtime_begin(nt_realtime *realtime, const nt_realtime_wish *wish);
+/* Gives priority, memory and wakefulness back, by the same thread. Accepts NULL. */
+NT_API void nt_realtime_end(nt_realtime *realtime);
 
 #ifdef __cplusplus
 }

@@ -17,8 +17,6 @@ typedef struct nt_observer nt_observer;
  * this user may not read it; NT_E_RANGE for a bad name; NT_E_UNSUPPORTED if another version of the library wrote it;
  * NT_E_NO_MEMORY. The result belongs to the caller: nt_observer_close. */
 NT_API nt_status nt_observer_attach(nt_observer **observer, const char *name);
-/* The same within the writer's process, also for private memory; to be closed before the frames. */
-NT_API nt_status nt_observer_of(nt_observer **observer, const nt_frames *frames);
 /* Accepts NULL. */
 NT_API void nt_observer_close(nt_observer *observer);
 

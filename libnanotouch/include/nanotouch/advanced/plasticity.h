@@ -5,10 +5,11 @@
  * around the contact is plastic. What unloads is elastic, from a dent with a radius of its own (docs/indentation.md has
  * the equations). Ideally plastic, without rate, without adhesion. All functions: thread-safe, no state but the
  * caller's. */
-#ifndef NANOTOUCH_PLASTICITY_H
-#define NANOTOUCH_PLASTICITY_H
+#ifndef NANOTOUCH_ADVANCED_PLASTICITY_H
+#define NANOTOUCH_ADVANCED_PLASTICITY_H
 
 #include "nanotouch/advanced/field.h"
+#include "nanotouch/contact.h"
 #include "nanotouch/surface.h"
 
 #ifdef __cplusplus
@@ -21,10 +22,6 @@ typedef struct nt_indentation {
     double effective_modulus; /* E* [Pa] */
     double yield_strength;    /* Y, of the sample [Pa] */
 } nt_indentation;
-/* A tip of 20 nm on gold (E* = 77 GPa, Y = 0.35 GPa). */
-NT_API nt_indentation nt_indentation_defaults(void);
-/* The table of its fields, with units and ranges; *count (NULL allowed) its length. */
-NT_API const nt_field *nt_indentation_fields(int *count);
 /* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE with the first offending field in *problem (NULL allowed). */
 NT_API nt_status nt_indentation_check(const nt_indentation *indentation, nt_problem *problem);
 
@@ -68,9 +65,6 @@ typedef struct nt_indentation_state {
  * radius above R/2), with the state left alone. */
 NT_API NT_REALTIME nt_status nt_indentation_advance(const nt_indentation *indentation, nt_indentation_state *state,
                                                     double depth);
-/* Many steps: the state after each; stops at the first that is refused. */
-NT_API nt_status nt_indentation_run_n(const nt_indentation *indentation, nt_indentation_state *state,
-                                      const double *depths, nt_indentation_state *states, long count);
 
 /* --- What stays: a dent, or the groove of a stroke, in the caller's height field --- */
 
@@ -82,8 +76,6 @@ typedef struct nt_displacement {
 } nt_displacement;
 /* 0.8 piled up, no debris, a ridge as wide as the dent's radius. */
 NT_API nt_displacement nt_displacement_defaults(void);
-/* The table of its fields, with units and ranges; *count (NULL allowed) its length. */
-NT_API const nt_field *nt_displacement_fields(int *count);
 /* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE with the first offending field in *problem (NULL allowed); the shares are 1
  * together at most. */
 NT_API nt_status nt_displacement_check(const nt_displacement *displacement, nt_problem *problem);
@@ -103,10 +95,6 @@ typedef struct nt_edit {
     long first_x, first_y, count_x, count_y;     /* the pixels that may have changed; none: counts of 0 */
     double removed, piled_up, densified, debris; /* [m^3] */
 } nt_edit;
-/* The pixels that an imprint with its ridge lies in; the volumes are 0. NT_OK; NT_E_ARGUMENT; NT_E_NOT_FINITE;
- * NT_E_RANGE with a problem: radius below NT_IMPRINT_PIXELS pixels, a ridge narrower than 2, beyond the map. */
-NT_API nt_status nt_imprint_extent(const nt_imprint *imprint, const nt_displacement *displacement,
-                                   const nt_height_map *map, nt_edit *edit, nt_problem *problem);
 /* From so many pixels of radius on the volume in the pixels is the imprint's own within 1 %: that of a long groove
  * along a row errs by 1/(4 n^2) at n pixels (the first term of Euler and Maclaurin). */
 #define NT_IMPRINT_PIXELS 6.0
@@ -131,10 +119,6 @@ typedef struct nt_scratching {
     double layer_thickness;    /* t; 0: no layer [m] */
     double substrate_hardness; /* H_s, below the layer; read where there is one [Pa] */
 } nt_scratching;
-/* A tip of 20 nm on gold (H = 1.05 GPa), tau = 50 MPa, no layer. */
-NT_API nt_scratching nt_scratching_defaults(void);
-/* The table of its fields, with units and ranges; *count (NULL allowed) its length. */
-NT_API const nt_field *nt_scratching_fields(int *count);
 /* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE with the first offending field in *problem (NULL allowed). */
 NT_API nt_status nt_scratching_check(const nt_scratching *scratching, nt_problem *problem);
 
@@ -156,6 +140,52 @@ NT_API double nt_worn_volume(double coefficient, double load, double way, double
 /* Radius of the flat [m] of a round tip of the radius R [m] that has lost a volume [m^3]: (4 R V/pi)^(1/4). NaN in, NaN
  * out. */
 NT_API double nt_worn_flat(double radius, double volume);
+
+/* --- A sample that keeps what a tip does to it while it is touched: force and heat of each contact by the law of
+ * plasticity.h, and a list of the dents and grooves that are left.
+ *
+ * One contact has one memory, chosen where it begins: the dent that is there, or none. A tip that slides ploughs: the
+ * rear half of its contact is free, so that it sinks until the front half carries the load, and the groove takes
+ * hardness times its section (docs/indentation.md). All functions: thread-safe, no state but the caller's. --- */
+
+enum { NT_DENTS = 128 };
+
+/* What a contact has left. */
+typedef struct nt_dent {
+    nt_imprint imprint; /* a dent, or a groove: end is not start */
+    double load;        /* that makes it at rest [N] */
+    int before;         /* the dent of the list that it has grown from; -1: a new one */
+    int grown;          /* so often it has grown in its place, as the last of the list */
+} nt_dent;
+
+/* Copyable. Zero is a sample that nothing has touched; nt_dents_place comes first. */
+typedef struct nt_dents {
+    nt_indentation_state contact; /* the one that is, or was last; indentation from where nothing had yielded */
+    double bottom;                /* the residual depth where this contact began [m] */
+    double began;                 /* and the radius of its dent; 0: none [m] */
+    double start[2], at[2];       /* where the contact began to slide, and is [m] */
+    double pressed[2];            /* where its dent grew last [m] */
+    double ploughed;              /* share of the rear half that is free, 0 .. 1 [-] */
+    double slid;                  /* the largest load while it slid, as at rest [N] */
+    double dissipated;            /* heat of all contacts, grows only [J] */
+    int touches;                  /* 1: it presses ... */
+    int inside;                   /* ... in this dent of the list, -1: in none */
+    int full;                     /* 1: a dent had no place in the list */
+    int count;
+    nt_dent made[NT_DENTS];
+} nt_dents;
+
+/* A tip that touches nothing goes to (x, y) [m]; what the last contact has left is added to the list. A dent that grows
+ * keeps its middle; the last of the list grows in its place, so that a lever that rings makes one dent. Returns how
+ * many dents were added or have grown, 0 .. 2: the last of the list. While it touches: nothing. */
+NT_API NT_REALTIME int nt_dents_place(const nt_indentation *indentation, nt_dents *dents, double x, double y);
+/* The law at a gap [m] over the surface with its dents, as nt_dents_lowered had it when the contact began. U is the
+ * work of getting there, with the heat of what yields. Pure. NaN in, NaN out. */
+NT_API NT_REALTIME nt_law_value nt_dents_eval(const nt_indentation *indentation, const nt_dents *dents, double gap);
+/* Commits a gap; one that is not a number changes nothing. */
+NT_API NT_REALTIME void nt_dents_advance(const nt_indentation *indentation, nt_dents *dents, double gap);
+/* The tip slips over the sample to (x, y), at the gap that was committed. What the contact gives up is heat. */
+NT_API NT_REALTIME void nt_dents_slide(const nt_indentation *indentation, nt_dents *dents, double x, double y);
 
 #ifdef __cplusplus
 }

@@ -32,15 +32,6 @@ typedef struct nt_noise {
     uint64_t position; /* next number of the stream */
 } nt_noise;
 
-/* The stream of a channel, before its first tick. Any seed and any channel are good. */
-NT_API nt_noise nt_noise_of(uint64_t seed, uint32_t channel);
-/* To the beginning of a tick, which has 2^32 numbers. */
-NT_API NT_REALTIME void nt_noise_seek(nt_noise *noise, uint64_t tick);
-/* As nt_random_uniform and nt_random_normal. */
-NT_API NT_REALTIME double nt_noise_uniform(nt_noise *noise);
-/* The next normal number of mean 0 and variance 1; real-time safe. */
-NT_API NT_REALTIME double nt_noise_normal(nt_noise *noise);
-
 #ifdef __cplusplus
 }
 #endif

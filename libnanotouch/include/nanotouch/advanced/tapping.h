@@ -3,8 +3,8 @@
  * lever, m q'' + (m w0/Q) q' + k_c q = F(h) - 2 eta a h' + k_c D cos(w t),   h = z_b + q cos(alpha) - z_s, q the way of
  * the tip along its own direction. Driven at the tip, the deflection is q. Driven at the base by D cos(w t), k_c D is
  * the same drive (the medium rests), and the deflection is q - D cos(w t). */
-#ifndef NANOTOUCH_TAPPING_H
-#define NANOTOUCH_TAPPING_H
+#ifndef NANOTOUCH_ADVANCED_TAPPING_H
+#define NANOTOUCH_ADVANCED_TAPPING_H
 
 #include "nanotouch/advanced/field.h"
 #include "nanotouch/interaction.h"
@@ -98,6 +98,44 @@ NT_API nt_status nt_tapping_run(const nt_tapping *tapping, nt_tapping_state *sta
  * between two branches); *state and *value are then its last period. info: periods, and the state's change over A0. */
 NT_API nt_status nt_tapping_settle(const nt_tapping *tapping, nt_tapping_state *state, const nt_tapping_over *over,
                                    nt_tapping_value *value, nt_solve_info *info);
+
+/* --- Tapping by its slow flow: amplitude and lag of a lever change little in one period, so that only what the force
+ * does over a whole period counts (Krylov, Bogoliubov). With q = q0 + Re(Z e^(i w t)), t in 1/w0, r = w/w0: Z' = i/(2
+ * r) [(1 - r^2 + i r/Q) Z - D - (fc - i fs) Z/|Z|], fc = 1/pi of the integral of F/k cos(psi) d(psi), fs = loss per
+ * period/(pi k |Z|), q = q0 + |Z| cos(psi). One step costs some 40 forces and may last several periods; the time domain
+ * (tapping.h) needs 1000 in one. --- */
+
+/* Amplitude and lag, slowly changing. Copyable. */
+typedef struct nt_flow_state {
+    double real, imaginary; /* Z, of the tip's way q [m] */
+    double mean;            /* q0 [m] */
+    int attached;           /* 1: a contact holds through the whole period */
+} nt_flow_state;
+
+/* What the force does in a period of amplitude A of q. */
+typedef struct nt_flow_average {
+    double cosine; /* fc [m] */
+    double sine;   /* fs [m] */
+    double mean;   /* <F>/k_c [m] */
+    double low;    /* gap at the lowest point [m] */
+    double peak;   /* the larger force of those at the lowest and the highest point [N] */
+    double loss;   /* [J] */
+    int attached;  /* at the top, afterwards */
+} nt_flow_average;
+
+/* Averages at the corners of cells of amplitude and lowest gap, made where steps come and kept for the next ones: a
+ * step costs a tenth. Between the corners they are bilinear, and linear in the radius of the place. Zero: none yet.
+ * Caller-owned, of one lever and plan; copyable. There is none across the capture gap, of a lever that stays attached,
+ * or where a sample's properties change from place to place. */
+enum { NT_FLOW_CELLS = 64 };
+typedef struct nt_flow_cell {
+    double low, amplitude, radius; /* of its first corner, and of the place [m] */
+    int is_made;
+    nt_flow_average corner[5]; /* low, low + width; the same at the next amplitude; the first at a larger radius */
+} nt_flow_cell;
+typedef struct nt_flow_table {
+    nt_flow_cell cell[NT_FLOW_CELLS];
+} nt_flow_table;
 
 #ifdef __cplusplus
 }

@@ -37,8 +37,6 @@ NT_API nt_status nt_terrain_make(nt_terrain **terrain, const nt_terrain_setup *s
 /* Accepts NULL. */
 NT_API void nt_terrain_close(nt_terrain *terrain);
 
-/* The bank that its plan evaluates contact with; NULL where none is of use. */
-NT_API const nt_maugis_bank *nt_terrain_bank(const nt_terrain *terrain);
 /* The plan of scene, demand and probe; never NULL. */
 NT_API const nt_plan *nt_terrain_plan(const nt_terrain *terrain);
 
@@ -61,8 +59,6 @@ typedef struct nt_area {
     double x_min, x_max; /* [m] */
     double y_min, y_max; /* [m] */
 } nt_area;
-/* All of a terrain from a start; of a flat, which has no borders, the start alone. */
-NT_API nt_area nt_terrain_whole(const nt_terrain *terrain, double x, double y);
 
 /* Along the straight lines from point to point, the start first; xy: count points (x, y) [m], count >= 1.
  *

@@ -25,8 +25,6 @@ typedef struct nt_histogram {
 /* The duration that a share of all do not exceed: the upper end of its bucket, or the longest one if that is less [ns].
  * share 0 .. 1; 0 if the histogram is empty. */
 NT_API int64_t nt_histogram_quantile(const nt_histogram *histogram, double share);
-/* Where bucket `index` begins [ns]; that of NT_HISTOGRAM_BUCKETS is where the last one ends. */
-NT_API int64_t nt_histogram_edge(int index);
 
 typedef enum nt_loop_phase {
     NT_LOOP_WAKE,    /* from the deadline to the first instruction */
