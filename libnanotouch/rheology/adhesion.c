@@ -8,6 +8,7 @@
 
 #include "core/problem.h"
 #include "core/roots.h"
+#include "core/same_bits.h"
 #include "internal/field.h"
 #include "nanotouch/rheology.h"
 #include "rheology/crack.h"
@@ -193,7 +194,7 @@ static nt_status begin(edge *of, const nt_viscoelastic *contact, const nt_viscoe
                  .radius = contact->shape.radius,
                  .work = adhesion->work_of_adhesion,
                  .stiffness = contact->spring_constant};
-    of->rest = cbrt(4.5 * PI * of->work * of->radius * of->radius / of->modulus);
+    of->rest = cube_root(4.5 * PI * of->work * of->radius * of->radius / of->modulus);
     if (adhesion->crack_length > ZONE * of->rest)
         return nt_problem_set(problem, "crack_length", "m", adhesion->crack_length, 1e-12, ZONE * of->rest);
     return nt_crack_make(&contact->rheology, adhesion->crack_length, &of->crack);

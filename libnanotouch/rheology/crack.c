@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "core/roots.h"
+#include "core/same_bits.h"
 
 #define PI 3.14159265358979323846
 #define SLOWEST 1e-9 /* times the slowest rate of the compliance: from there down the ratio is linear */
@@ -34,7 +35,7 @@ double nt_crack_ratio(const nt_crack *crack, double s)
     double rest = 1.0;
     for (int j = 0; j < crack->count; j++) {
         const double b = 2.0 * PI * s * crack->times[j];
-        rest -= crack->shares[j] * (b / (1.0 + hypot(1.0, b)));
+        rest -= crack->shares[j] * (b / (1.0 + hypotenuse(1.0, b)));
     }
     return 1.0 / rest;
 }
