@@ -14,6 +14,7 @@ cp "$files"/* docs/examples/testing/test_own_backend.py apps/c/05_plan.c "$root/
 for file in /etc/resolv.conf /etc/hosts /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do # how this machine reaches the net
   [ ! -f "$file" ] || { mkdir -p "$root${file%/*}" && cp "$file" "$root$file"; }
 done
+cp "$root/etc/ssl/certs/ca-certificates.crt" "$root/release/" 2>/dev/null || true
 
 cat >"$root/release/way.sh" <<'WAY'
 set -eu
@@ -34,6 +35,7 @@ echo "     wall processor"
 apt_get() { apt-get -qq install -y --no-install-recommends "$@"; }
 step "apt-get update" apt-get -qq update
 step "apt-get install python3-venv" apt_get python3-venv
+cp /release/ca-certificates.crt /etc/ssl/certs/ 2>/dev/null || true # which Debian's package of this name has replaced
 tag=$(python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
 step "python3 -m venv" python3 -m venv v
 file=$(ls /release/*-"$tag"-*linux*.whl 2>/dev/null || true)
