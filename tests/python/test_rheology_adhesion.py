@@ -4,6 +4,9 @@ complex modulus, the edge's motion by a stiff solver of ordinary differential eq
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import nanotouch as nt
 import numpy as np
 import pytest
@@ -103,3 +106,11 @@ def test_what_is_not_known_is_refused() -> None:
         SOLID.force(time, base, TIP, work_of_adhesion=float("nan"), crack_length=1e-9)
     with pytest.raises(InvalidValue, match=r"speed = .* m/s"):
         SOLID.force(1e-3 * time, 1e2 * base, TIP, **edge)
+
+
+def test_the_examples_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
+    page = Path(__file__).parents[2].joinpath("docs/rheology.md").read_text(encoding="utf-8")
+    blocks = [block for block in re.findall(r"```python\n(.*?)```", page, re.S) if "curves.read" not in block]
+    exec("\n".join(blocks), {})
+    pull_off = float(capsys.readouterr().out.split()[-1])
+    assert 1.0 < pull_off < 10.0  # between rest and E_0/E_inf
