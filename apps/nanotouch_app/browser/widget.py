@@ -44,6 +44,7 @@ class Touch(anywidget.AnyWidget):
     _esm = ESM
     page = traitlets.Unicode().tag(sync=True)
     height = traitlets.Int(720).tag(sync=True)
+    _thread: threading.Thread | None = None  # none where the page could not be had
 
     def __init__(self, what: str | Subject = "silicon_in_air", page: str | Path | None = None, **options: Any) -> None:
         super().__init__(page=page_of(page).decode("utf-8"), **options)
@@ -116,7 +117,7 @@ class Touch(anywidget.AnyWidget):
 
     def close(self) -> None:
         """End the session."""
-        if not self._ends.is_set():
+        if self._thread is not None and not self._ends.is_set():
             self._ends.set()
             self._thread.join()
             self._readers.close()
