@@ -257,7 +257,7 @@ def test_refusals() -> None:
     time, position = triangle(20, 1.0)
     law = Rheology.power_law(E1, 0.2)
     for change, words in (
-        ({"time": time[::-1].copy()}, "times"),
+        ({"time": time[::-1].copy()}, r"time\[1\] = .* s: it must be above time\[0\]"),
         ({"position": position + 1e-7}, r"positions\[0\]"),
         ({"position": np.where(time == 1.0, np.nan, position)}, "positions"),
         ({"shape": Shape("blunted", radius=1e-7, half_angle=0.3)}, "kind"),

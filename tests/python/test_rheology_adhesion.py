@@ -100,6 +100,8 @@ def test_what_is_not_known_is_refused() -> None:
         SOLID.force(time, base, nt.geometry.Shape("cone", half_angle=0.5), **edge)
     with pytest.raises(InvalidValue, match="derivatives with adhesion"):
         SOLID.force(time, base, TIP, derivatives=True, **edge)
+    with pytest.raises(InvalidValue, match=r"time\[49\] = 0.979.* s: it must be above time\[48\] = 0.979"):
+        SOLID.force(np.append(time[:-1], time[-2]), base, TIP, **edge)
     with pytest.raises(InvalidValue, match="crack_length"):
         SOLID.force(time, base, TIP, work_of_adhesion=1e-3)
     with pytest.raises(InvalidValue, match="work_of_adhesion"):

@@ -277,6 +277,10 @@ class Rheology:
             raise InvalidValue(
                 f"time and position of {times.shape} and {positions.shape}: two equal arrays of 2 or more"
             )
+        stands = np.flatnonzero(np.diff(times) <= 0.0)
+        if stands.size:
+            i = int(stands[0]) + 1
+            raise InvalidValue(f"time[{i}] = {times[i]:.9g} s: it must be above time[{i - 1}] = {times[i - 1]:.9g} s")
         tip = _core.Shape(KINDS.index(shape.kind), shape.sides, shape.radius, shape.half_angle, shape.transition)
         law = _core.Viscoelastic(tip, self._core, float(poisson_ratio), float(thickness), float(spring_constant))
         if work_of_adhesion == 0.0 and crack_length == 0.0:
