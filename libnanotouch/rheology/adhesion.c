@@ -15,16 +15,19 @@
 #include "rheology/run.h"
 
 #define PI 3.14159265358979323846
-#define STEP 0.01          /* of the contact radius, at most, in one step */
-#define WAY 0.005          /* of JKR's depth without load, at most, that the base moves in one step */
-#define MOST_STEPS 20000.0 /* between two points */
-#define SEED 1e-3          /* of JKR's radius without load: where a contact begins, and where it is lost */
-#define ZONE 0.1           /* of that radius, at most, is the process zone */
+#define STEP 0.01 /* of the contact radius, at most, in one step */
+#define WAY 0.005 /* of JKR's depth without load, at most, that the base moves in one step */
+#define MOST_STEPS                                                                                                     \
+    20000.0       /* between two points: 100 such depths; beyond, the points are too far apart to show a contact */
+#define REST 60.0 /* in ln of the speed, below one step in the time left: the edge does not move */
+#define SEED 1e-3 /* of JKR's radius without load: where a contact begins, and where it is lost */
+#define ZONE 0.1  /* of that radius, at most, is the process zone */
 #define MAX_BULK 0.05
 
 typedef struct edge {
     nt_crack crack;
     double modulus, radius, work, stiffness; /* E* [Pa], R [m], w [J/m^2], k_c [N/m]; 0: rigid */
+    double equilibrium_modulus;              /* E_inf [Pa] */
     double rest;                             /* contact radius without load [m] */
     double base, a;                          /* where base and edge are [m] */
     double dissipated;                       /* [J] */
@@ -53,6 +56,15 @@ static double release_at(const edge *of, double a)
 {
     const double gap = a * a / of->radius - indentation_at(of, a);
     return of->modulus * gap * fabs(gap) / (2.0 * PI * a * of->work);
+}
+
+/* Energy of sample, lever and surfaces, over that of a free tip [J]. */
+static double stored_at(const edge *of, double a)
+{
+    const double R = of->radius, delta = indentation_at(of, a), force = force_at(of, a);
+    const double elastic = of->modulus * a * (delta * delta - a * a / R * (2.0 / 3.0 * delta - a * a / (5.0 * R)));
+    const double lever = of->stiffness > 0.0 ? 0.5 * force * force / of->stiffness : 0.0;
+    return elastic + lever - PI * of->work * a * a;
 }
 
 /* What w_eff/w, or its inverse for an edge that closes, must be for the edge to move at all: > 1. */
@@ -91,28 +103,13 @@ static double speed_of(const nt_crack *crack, double ratio)
     return crack->length * ratio * nt_crack_crossings(crack, ratio);
 }
 
-/* Crossings at which the edge moves so far in a time; ln. */
-typedef struct reach {
-    const nt_crack *crack;
-    double speed;
-} reach;
-
-static double too_fast(double log_s, const void *context)
-{
-    const reach *of = context;
-    return of->crack->length * nt_crack_ratio(of->crack, exp(log_s)) * exp(log_s) - of->speed;
-}
-
 /* In the time that is left the edge moves less than one step: where to. */
 static nt_status settle(edge *of, double left, int opens)
 {
     const step now = {of, left, opens};
-    const reach window = {&of->crack, STEP * of->a / left};
     double bracket[2], log_s;
-    const double fastest = log(window.speed / of->crack.length); /* ratio is 1 at least */
-    const double span[2] = {fastest - log(of->crack.max_ratio) - 1e-6, fastest + 1e-6};
-    nt_status status = nt_root_find(too_fast, &window, span, &bracket[1], NULL);
-    bracket[0] = bracket[1] - 60.0;
+    nt_status status = nt_crack_log_crossings_at(&of->crack, STEP * of->a / left, &bracket[1]);
+    bracket[0] = bracket[1] - REST;
     if (status != NT_OK || excess(bracket[0], &now) <= 0.0)
         return status; /* it rests */
     status = nt_root_find(excess, &now, bracket, &log_s, NULL);
@@ -140,8 +137,10 @@ static nt_status creep(edge *of, double left)
             move(of, next);
             left -= needs;
         }
-        if (opens && of->a < SEED * of->rest && indentation_at(of, 0.0) <= 0.0)
+        if (opens && of->a < SEED * of->rest && indentation_at(of, 0.0) <= 0.0) {
+            of->dissipated += stored_at(of, of->a); /* a soft lever still holds much there */
             of->a = 0.0;
+        }
     }
     return NT_OK;
 }
@@ -158,8 +157,10 @@ static nt_status advance(edge *of, double time, double base)
     nt_status status = NT_OK;
     for (int i = 1; i <= count && status == NT_OK; i++) {
         of->base = from + (base - from) * i / count;
-        if (of->a == 0.0 && of->base > 0.0)
+        if (of->a == 0.0 && of->base > 0.0) {
             of->a = SEED * of->rest;
+            of->dissipated -= stored_at(of, of->a);
+        }
         status = creep(of, time / count);
     }
     return status;
@@ -191,6 +192,7 @@ static nt_status begin(edge *of, const nt_viscoelastic *contact, const nt_viscoe
 {
     const double nu = contact->poisson_ratio;
     *of = (edge){.modulus = contact->rheology.equilibrium_modulus / (1.0 - nu * nu),
+                 .equilibrium_modulus = contact->rheology.equilibrium_modulus,
                  .radius = contact->shape.radius,
                  .work = adhesion->work_of_adhesion,
                  .stiffness = contact->spring_constant};
@@ -205,14 +207,10 @@ typedef struct pace {
     double fastest, widest, max_force; /* of the base in contact [m/s], of the contact [m], |F| [N] */
 } pace;
 
-static nt_status check_pace(const nt_viscoelastic *contact, const pace *seen, nt_viscoelastic_result *result,
-                            nt_problem *problem)
+static nt_status check_pace(const edge *of, const pace *seen, nt_viscoelastic_result *result, nt_problem *problem)
 {
-    const double nu = contact->poisson_ratio, arms = contact->rheology.kind == NT_RHEOLOGY_PRONY;
-    double viscosity = 0.0; /* Int (E - E_inf) dt */
-    for (int k = 0; k < (arms != 0.0 ? contact->rheology.arm_count : 1); k++)
-        viscosity += contact->rheology.arm_moduli[k] * contact->rheology.relaxation_times[k];
-    const double excess_force = 2.0 * seen->widest * seen->fastest * viscosity / (1.0 - nu * nu);
+    const double viscosity = of->crack.viscosity * of->modulus / of->equilibrium_modulus; /* over 1 - nu^2 */
+    const double excess_force = 2.0 * seen->widest * seen->fastest * viscosity;
     result->bulk_error = seen->max_force > 0.0 ? excess_force / seen->max_force : 0.0;
     if (result->bulk_error <= MAX_BULK)
         return NT_OK;
@@ -254,5 +252,5 @@ nt_status nt_viscoelastic_run_adhesive(const nt_viscoelastic *contact, const nt_
     result->kernel_error = 0.0;
     result->by_springs = 0;
     result->dissipated = of.dissipated;
-    return check_pace(contact, &seen, result, problem);
+    return check_pace(&of, &seen, result, problem);
 }

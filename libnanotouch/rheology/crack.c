@@ -19,10 +19,15 @@ nt_status nt_crack_make(const nt_rheology *rheology, double length, nt_crack *cr
     const int arms = rheology->kind == NT_RHEOLOGY_STANDARD_LINEAR_SOLID ? 1 : rheology->arm_count;
     nt_retardation late;
     const nt_status status = nt_prony_retard(rheology, arms, &late);
-    double instant = rheology->equilibrium_modulus;
-    for (int k = 0; k < arms; k++)
+    double instant = rheology->equilibrium_modulus, viscosity = 0.0;
+    for (int k = 0; k < arms; k++) {
         instant += rheology->arm_moduli[k];
-    *crack = (nt_crack){.count = late.count, .length = length, .max_ratio = instant / rheology->equilibrium_modulus};
+        viscosity += rheology->arm_moduli[k] * rheology->relaxation_times[k];
+    }
+    *crack = (nt_crack){.count = late.count,
+                        .length = length,
+                        .max_ratio = instant / rheology->equilibrium_modulus,
+                        .viscosity = viscosity};
     for (int j = 0; j < late.count && status == NT_OK; j++) {
         crack->shares[j] = rheology->equilibrium_modulus * late.compliances[j];
         crack->times[j] = 1.0 / late.rates[j];
@@ -42,13 +47,13 @@ double nt_crack_ratio(const nt_crack *crack, double s)
 
 typedef struct wanted {
     const nt_crack *crack;
-    double ratio;
+    double value; /* a ratio, or a speed [m/s] */
 } wanted;
 
 static double beyond(double log_s, const void *context)
 {
     const wanted *of = context;
-    return nt_crack_ratio(of->crack, exp(log_s)) - of->ratio;
+    return nt_crack_ratio(of->crack, exp(log_s)) - of->value;
 }
 
 double nt_crack_crossings(const nt_crack *crack, double ratio)
@@ -66,4 +71,18 @@ double nt_crack_crossings(const nt_crack *crack, double ratio)
     if (nt_crack_ratio(crack, exp(bracket[0])) >= ratio)
         return (ratio - 1.0) / slope;
     return nt_root_find(beyond, &of, bracket, &log_s, NULL) == NT_OK ? exp(log_s) : (double)INFINITY;
+}
+
+static double too_fast(double log_s, const void *context)
+{
+    const wanted *of = context;
+    return of->crack->length * nt_crack_ratio(of->crack, exp(log_s)) * exp(log_s) - of->value;
+}
+
+nt_status nt_crack_log_crossings_at(const nt_crack *crack, double speed, double *log_s)
+{
+    const wanted of = {crack, speed};
+    const double fastest = log(speed / crack->length); /* the ratio is 1 at least */
+    const double bracket[2] = {fastest - log(crack->max_ratio) - 1e-6, fastest + 1e-6};
+    return nt_root_find(too_fast, &of, bracket, log_s, NULL);
 }

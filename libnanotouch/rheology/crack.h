@@ -12,6 +12,7 @@ typedef struct nt_crack {
     double times[NT_RHEOLOGY_ARMS];  /* retardation times [s] */
     double length;                   /* a_0, of the process zone of a crack at rest [m] */
     double max_ratio;                /* E_0/E_inf [-] */
+    double viscosity;                /* of the bulk, Int (E - E_inf) dt [Pa s] */
 } nt_crack;
 
 /* Of a standard linear solid or a Prony series with E_inf > 0. */
@@ -21,5 +22,7 @@ nt_status nt_crack_make(const nt_rheology *rheology, double length, nt_crack *cr
 double nt_crack_ratio(const nt_crack *crack, double s);
 /* Its inverse. 0 for ratios up to 1, INFINITY from max_ratio on. [1/s] */
 double nt_crack_crossings(const nt_crack *crack, double ratio);
+/* Those of a crack that moves at a speed > 0 [m/s]; ln. */
+nt_status nt_crack_log_crossings_at(const nt_crack *crack, double speed, double *log_s);
 
 #endif
