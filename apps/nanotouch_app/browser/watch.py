@@ -61,7 +61,7 @@ class Watcher:
                 self.tell(told)
 
     def _for_pages(self, message: Message) -> list[Message]:
-        """A page knows no field, so it is told what each slider shows."""
+        """With what each slider shows: a page knows no fields."""
         if message["tell"] != "world":
             return [message]
         described = nt.Scene(**message["scene"]), nt.Rig(**message["rig"]), nt.Settings(**message["settings"])
@@ -75,7 +75,7 @@ class Watcher:
         return told
 
     def answer(self, message: Message) -> bool:
-        """Pass on what a page asks; what is refused is told. False: the program has ended."""
+        """Pass on what a page asks; a refusal goes back to it. False: the program has ended."""
         if message["do"] == "leave":
             return False
         if message["do"] == "device" or (message == {"do": "press", "on": False} and not self.remote.leads):
